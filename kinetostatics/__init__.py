@@ -1,4 +1,4 @@
-"""Forces, torques and losses of planar mechanisms: what runs through each joint, what the drive must give.
+"""Forces, torques and losses of planar mechanisms: the force in every joint, the torque that the drive must supply.
 
 Call first
     >>> import kinetostatics as ks
@@ -16,13 +16,13 @@ signs.
 
 Then
     crank_slider, cam_crank_slider, four_bar    a mechanism; Link its masses, Gravity, Spring, ProcessForce its loads
-    slotted_lever, scotch_yoke                  more of them; Pin, Dyad, LeverGroup ... for chains of one's own
+    slotted_lever, scotch_yoke                  more of them; Pin, Dyad, LeverGroup ... for your own chains
     Force, Torque, PointForce, PointSpring ...  loads on any link; Table of their values by angle or travel
     PinFriction, GuideFriction ...              friction, joint by joint
     Scene(mechanism, crank_speed, ...)          the machine to solve; .solve(angles), .varied({"slider.mass": 620.0})
     load_case("sawframe_2r63")                  scenes from a file; shipped_cases() lists the files of the package
     extremes, compare                           exact peak values; ratios of torque and force between two designs
-    s.error_bound("O"), s.uncertainty("O", ...) how sure values are: rounding, proven (tight=True: nearer); tolerances
+    s.error_bound("O"), s.uncertainty("O", ...) accuracy: proven rounding bound (tight=True: closer); tolerances
     drive.steady, drive.flywheel ...            running under a motor; flywheels, starting, coasting
     balancing, Counterweight                    counterweights: full, partial, optimal
     design.optimise, design.torque_free_cam     the best machine within bounds and limits; a cam that needs no torque
@@ -38,14 +38,14 @@ Then
 
 Each name shows an example: ``help(ks.solve)``. From the shell: ``kinetostatics --help``.
 
-The table of rooms, the folders of this package, stands in docs/contributors.md.
+docs/contributors.md lists the folders of this package and their contents.
 """
 
 from .version import __version__ as __version__
 
 
 def __getattr__(name):
-    """A public name, loaded with the libraries that it needs when first used; `__init__.pyi` lists them."""
+    """A public name, loaded with the libraries that it needs on first use; `__init__.pyi` lists them."""
     from .numbers.lazy import public_name, pyplot
 
     if name in ("plots", "report"):

@@ -4,7 +4,7 @@ import gc
 import sys
 
 COLLECTION_THRESHOLD = 100_000
-"""New objects after which unreachable cycles are collected; libraries and figures make many objects that stay."""
+"""Number of new objects between garbage collections; libraries and figures create many long-lived objects."""
 
 
 def main():

@@ -1,4 +1,4 @@
-"""The errors a user may meet; all are `KinetostaticsError`."""
+"""Errors and warnings of the library; every error is a `KinetostaticsError`."""
 
 
 class KinetostaticsError(Exception):
@@ -26,12 +26,12 @@ def _restored(kind, arguments, state):
 
 
 class ParameterError(KinetostaticsError, ValueError):
-    """A length, mass, stiffness, angle ... is impossible; the message lists all of them.
+    """An input is impossible, such as a negative mass; the message lists every such input.
 
     Attributes
     ----------
     designs : array of bool or None
-        Mask of the designs of a batch with the fault; None for all.
+        True for each design of a batch that has the fault; None: all have it.
 
     Examples
     --------
@@ -88,7 +88,7 @@ class JammingError(KinetostaticsError, ValueError):
     Attributes
     ----------
     angles : tuple of float
-        Crank angles among those asked for, rad.
+        Requested crank angles at which friction jams, rad.
 
     Examples
     --------
@@ -247,7 +247,7 @@ class CaseError(KinetostaticsError, ValueError):
 
 
 class HintWarning(UserWarning):
-    """An input looks like a slip, of units for instance; it is used as given.
+    """An input looks like a mistake, for instance of units; it is used as given.
 
     Examples
     --------
@@ -257,7 +257,7 @@ class HintWarning(UserWarning):
     ...     warnings.simplefilter("always")
     ...     s = ks.solve(ks.crank_slider(0.3, 2.0), [0.0, 90.0, 180.0, 270.0], crank_speed=1.0)
     >>> print(found[0].message)
-    crank-slider: crank angles from 0 to 270 by 90 look like degrees; they are taken as radians
+    crank-slider: crank angles from 0 to 270 by 90 look like degrees; they are used as radians
     """
 
     def __str__(self):
@@ -270,7 +270,7 @@ class HintWarning(UserWarning):
 
 
 class ConditionWarning(UserWarning):
-    """The result is right for the given numbers, but very sensitive to them.
+    """The result is correct for the given numbers, but very sensitive to them.
 
     Examples
     --------

@@ -1,3 +1,3 @@
-"""The version of the library, for the package and what it writes."""
+"""The version of the library, for the package and the files it writes."""
 
 __version__ = "0.2.0"

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import re
 import warnings
 
 import numpy as np
@@ -588,6 +589,15 @@ def test_quantity_equals_the_plain_number(name, parameter):
     assert seen(make(**told, **others)) == seen(make(**plain, **others))
 
 
+@pytest.mark.slow
+@every("name", DOORS)
+def test_results_print_plain_numbers(name):
+    make, given, others = DOORS[name]
+    found = make(**{key: value for key, (value, _) in given.items()}, **others)
+    if type(found).__module__.startswith("kinetostatics"):
+        assert not re.search(r"np\.float|array\(", f"{found!r} {found}")
+
+
 CALLED = {
     "run.with_flywheel inertia": "flywheel",
     "exact": "direction",
@@ -619,7 +629,7 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("precision", "device", "reaction", "before", "opposing", "cuts", "spring", "left", "right", "result", "marks"),
-    *("planet", "numbers"),
+    *("planet", "numbers", "units"),
     *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(

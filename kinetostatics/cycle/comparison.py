@@ -10,6 +10,7 @@ from ..machine.loads import TURN
 from ..mechanics.quantities import label_of, magnitude, of_scene, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
+from ..numbers.output_units import output_units
 from .extremes import extremes
 from .kinks import ANGLE_TOLERANCE
 from .load_functions import with_resolution
@@ -125,12 +126,14 @@ class Comparison:
 
         return tuple(_range(solution, force) for solution in self._both)
 
-    def frame(self):
+    def frame(self, units=None):
         """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio.
 
-        Values that are rounding, within their proven bound or beside the largest force or torque, are 0.
+        Values that are rounding, within their proven bound or beside the largest force or torque, are 0. `units` is a
+        dict of dimension to unit as of `in_units`.
         """
-        return self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)
+        table = self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)
+        return output_units(units, "frame").table(table)
 
     def error_bounds(self):
         """Proven bounds on the rounding errors of `frame`, a pandas DataFrame of the same rows and columns.

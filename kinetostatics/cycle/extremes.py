@@ -25,21 +25,21 @@ PROBE_PLACES = np.array([0.07, 0.23, 0.41, 0.66, 0.89])
 GROWTH_TOLERANCE = 1e-6
 """Growth in a period, relative to the largest value, above which a function does not repeat."""
 MAX_ORDINARY_CONDITION = 1e6
-"""Condition up to which values are of ordinary size, and rounding is small beside them."""
+"""Condition below which values have ordinary size and negligible rounding."""
 TAIL_SHARE = 0.2
-"""Size of the last coefficients of a series, relative to the rounding of the quantity, that is rounding."""
+"""Size of the last coefficients of a series, relative to the rounding of the quantity, that counts as rounding."""
 FUNCTION_STEP = np.radians(0.25)
-"""Crank angle, rad, between values of a function of the user's that are compared with its series."""
+"""Crank-angle step, rad, at which a user's function is compared with its series."""
 MISSED = 1e-9
-"""Their difference, relative to the largest value, that counts: between its points a piece has missed a pulse."""
+"""Least difference, relative to the largest value, that shows a pulse missed between the points of a piece."""
 MIN_OPEN_WIDTH = 0.005
-"""Width of a piece, rad, that is no longer halved where only a part of its values is finite."""
+"""Width of a piece, rad, below which a partly finite piece is not halved."""
 SHOWN = ("smallest", "smallest at [deg]", "largest", "largest at [deg]")
 
 
 @dataclass(frozen=True, eq=False)
 class Extremes:
-    """Extrema of one quantity over the period of the solution, one turn as a rule, in order of crank angle.
+    """Extrema of one quantity over the period of the solution, usually one turn, in order of crank angle.
 
     Attributes
     ----------
@@ -47,8 +47,8 @@ class Extremes:
     angle : array (K,)
         Crank angles in [0, period), rad.
     value : array (K,)
-        Values of the quantity, SI; at a limit position or the end of a gap its limit there, infinite if it grows
-        without bound.
+        Values of the quantity, SI. At a limit position or the end of a gap the limit of the quantity, infinite if it
+        grows without bound.
     maximum : array (K,) of bool
         Whether each is a maximum.
     constant : float
@@ -56,9 +56,9 @@ class Extremes:
     left_out : array (L,)
         Crank angles around which no value has a correct digit, rad.
     solution : Solution or None
-        None for a function of the user's.
+        None for a user's function.
     note : str
-        Resolution of load functions without `kinks`; empty where none acts on the quantity.
+        Resolution of load functions without `kinks`; empty if none of them affects the quantity.
 
     Examples
     --------
@@ -86,10 +86,10 @@ class Extremes:
         Raises
         ------
         NotGivenError
-            As for `Solution.error_bound`, or the quantity is a function of yours.
+            As for `Solution.error_bound`, or the quantity is your own function.
         """
         if self.solution is None:
-            raise NotGivenError("no bound can be given: the quantity is a function of yours")
+            raise NotGivenError("no bound can be given: the quantity is your own function")
         if not len(self):
             return np.empty(0)
         vector = quantities.quantity(self.solution, self.quantity).vector
@@ -99,7 +99,7 @@ class Extremes:
     @property
     def range(self):
         """Smallest and largest value over the turn; both are the constant if it has no extremum."""
-        return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
+        return (float(self.value.min()), float(self.value.max())) if len(self) else (self.constant, self.constant)
 
     @property
     def largest(self):
@@ -114,11 +114,11 @@ class Extremes:
 
 
 def extremes(solution, quantity):
-    """All extrema of one quantity over the period of the solution: the turn, or several for a load that takes them.
+    """All extrema of one quantity over the period of the solution: one turn, or several for a four-stroke load.
 
-    The turn is split at the kinks of loads, friction and laws of cams, and the quantity is a Chebyshev series on each
-    piece, halved until the series is exact to rounding; the zeros of its slope are evaluated by the mechanism itself.
-    Load functions that declare no kinks are sampled at the `resolution` of the solution first, a `quantity` that is a
+    The turn is split at the kinks of loads, friction and cam laws. On each piece the quantity is a Chebyshev series;
+    pieces are halved until the series is exact to rounding. The zeros of its slope are evaluated by the mechanism
+    itself. Load functions without `kinks` are first sampled at the `resolution` of the solution, a `quantity` that is a
     function every quarter of a degree. At a jump the extrema are the values on its two sides.
 
     Values with less than two correct digits, by `Solution.condition`, do not count; the limits of the quantity from
@@ -135,21 +135,20 @@ def extremes(solution, quantity):
     Returns
     -------
     Extremes
-        `.angle` and `.value` in order of angle; empty for a quantity that is constant but for rounding.
+        `.angle` and `.value` in order of angle; empty for a quantity that is constant to rounding.
 
     Raises
     ------
     QuantityError
-        The solution has no such quantity.
+        The solution does not have the quantity.
     ParameterError
-        The solution is a batch of designs, or depends on a table over its own crank angles, or a load that is a
-        function does not repeat after its period, or the quantity is a function that grows in each period.
+        The solution is a batch of designs, or depends on a table over its own crank angles. Or a load function does not
+        repeat after its period, or the quantity is a function that grows in each period.
 
     Warns
     -----
     ConditionWarning
-        Values around some crank angles have no correct digit, or the quantity grows without bound there; or friction
-        jams there.
+        Around some crank angles no value has a correct digit, the quantity grows without bound, or friction jams.
     HintWarning
         A load function without `kinks` changes between its samples (`Scene.check_resolution`).
 
@@ -170,22 +169,23 @@ def extremes(solution, quantity):
 
 
 def warning(solution, several):
-    """Sentence of a `ConditionWarning` on extremes of a solution, or None."""
+    """Sentence of a `ConditionWarning` on the extremes of a solution, or None."""
     unbounded = [item for item in several if np.isinf(item.value).any()]
     left_out = np.unique(np.concatenate([item.left_out for item in several]))
     sentences = []
     jams = jamming.jammed_angles(solution.sampled.even) if solution.friction.acting else np.empty(0)
     if jams.size:
         ends = f"{_degrees(jams[:1])} ... {_degrees(jams[-1:])}"
-        sentences.append(f"friction jams between {ends} deg (solution.friction_margin), no value counts there")
+        sentences.append(f"friction jams between {ends} deg (solution.friction_margin), values there do not count")
     if left_out.size:
-        sentences.append(f"around crank angles {_degrees(left_out)} deg no value has a correct digit, so none counts")
+        angles = _degrees(left_out)
+        sentences.append(f"around crank angles {angles} deg no value has a correct digit, so none counts there")
     for item in unbounded:
         angle = np.unique(item.angle[np.isinf(item.value)])
         sentences.append(f"{item.quantity} grows without bound at {_degrees(angle)} deg")
     unknown = [item.quantity for item in several if not len(item) and np.isnan(item.constant)]
     if unknown:
-        why = f": it {solution.sampled.unclosed}" if solution.sampled.gaps else " with a correct digit at all"
+        why = f": it {solution.sampled.unclosed}" if solution.sampled.gaps else " with a correct digit"
         sentences.append(f"{', '.join(unknown)} has no value{why}")
     return f"{solution.mechanism.name}: {'; '.join(sentences)} (solution.condition)" if sentences else None
 
@@ -197,8 +197,8 @@ def _degrees(angles):
 def extrema(solution, quantity, pulsed=True):
     """The extrema without a warning; those of named quantities are cached for all solutions of the same turn.
 
-    A `quantity` that is a function may have pulses of its own, unless `pulsed` is False: then all its kinks are those
-    of friction and loads, and it is not sampled every quarter of a degree.
+    A `quantity` that is a function may have its own pulses. With `pulsed` False all its kinks are those of friction and
+    loads, and it is not sampled every quarter of a degree.
     """
     require_single(solution, "extremes", quantity)
     grows = callable(quantity) or solution.mechanism.grows(quantity)
@@ -259,10 +259,10 @@ def _constant(name, values, left_out):
 
 
 def _resolved(turn, quantity, good, floor, scale, pulsed):
-    """Pieces with resolved series of a quantity, its values, NaN without digits, which stay rough, and its rounding.
+    """Resolved pieces of a quantity, its values (NaN without correct digits), a mask of rough pieces, and its rounding.
 
-    Values (1 or 2, pieces, points + 2) are those of the quantity, or its components; with a `scale` its square, whose
-    rounding is so many times as large.
+    Values (1 or 2, pieces, points + 2) are the quantity or its components; with a `scale` its square, whose rounding
+    is `scale` times as large.
     """
 
     def function(at):
@@ -275,7 +275,7 @@ def _resolved(turn, quantity, good, floor, scale, pulsed):
         return np.interp(pieces.checked, turn.angle, np.where(np.isfinite(floor), floor, np.inf)).max(axis=1)
 
     def steep(pieces, values):
-        """What the rounding of crank angles makes of steep values, as on the flank of a step."""
+        """Error of steep values, as on the flank of a step, from the rounding of crank angles."""
         rise = np.nan_to_num(np.ptp(values[..., 1:-1], axis=-1)).max(axis=0)
         return rise / (2.0 * pieces.half[:, 0]) * np.spacing(turn.period)
 
@@ -307,7 +307,7 @@ def _resolved(turn, quantity, good, floor, scale, pulsed):
 
 
 def _require_repeating(turn, function, size):
-    """Refuse a function that grows by the same amount in each period, as the angle of a link that turns fully."""
+    """Refuse a function that grows by the same amount in each period, as the angle of a link that makes full turns."""
     first, second = (
         np.asarray(function(turn.at.moved_to(turn.period * (PROBE_PLACES + turns)))) for turns in (0.0, 1.0)
     )
@@ -317,12 +317,12 @@ def _require_repeating(turn, function, size):
     ):
         raise ParameterError(
             f"extremes: the function of the solution grows by {growth:.6g} in each period of {turn.period:.6g} rad, as "
-            "the angle of a link that turns fully does, so it has no extremes; take its rate, or what repeats"
+            "the angle of a link that makes full turns does, so it has no extremes; use a periodic function"
         )
 
 
 def _size_and_rounding(turn, quantity, samples, good, position):
-    """Largest value of a quantity without its growth at limit positions, and its rounding at each sample."""
+    """Largest value of a quantity excluding its growth at limit positions, and its rounding at each sample."""
     calm = good & (turn.condition < MAX_ORDINARY_CONDITION)
     calm = calm if calm.any() else good
     size = float(np.max(np.abs(samples[calm]), initial=0.0))
@@ -350,26 +350,31 @@ class ExtremesRow(NamedTuple):
     ends: tuple[float, ...]
     errors: tuple[float, ...]
 
+    def in_units(self, units):
+        """The row in `OutputUnits`; crank angles stay in degrees."""
+        factor, unit = units.of(self.quantity.unit)
+        ends, errors = ((low * factor, at, high * factor, to) for low, at, high, to in self[1:])
+        return ExtremesRow(self.quantity._replace(unit=unit), ends, errors)
+
 
 def extremes_frame(solution):
     """Smallest and largest true extremum of every quantity over the period, with its crank angle, a pandas DataFrame.
 
-    Energies are left out, and forces on the frame, which `Solution.ground` has in a table of its own.
+    Energies are left out, and so are forces on the frame, which `Solution.ground` tabulates.
 
-    Values within their proven rounding error, or small beside the largest term of their kind, are 0; so are angles
-    within `PLACED` of 0. ``attrs["resolution"]`` tells the resolution of load functions without `kinks`, if there are
-    any.
+    Values within their proven rounding error, or small relative to the largest term of their kind, are 0; angles within
+    `PLACED` of 0 are 0. ``attrs["resolution"]`` is the resolution of load functions without `kinks`, if there are any.
 
     Warns
     -----
     ConditionWarning
-        Once for all quantities: values around some crank angles have no correct digit, or grow without bound there.
+        Once for all quantities: around some crank angles values have no correct digit, or grow without bound.
     """
     return with_resolution(frames(extremes_by_name(solution))[0], solution)
 
 
 def frames(rows):
-    """Two tables of the rows of `extremes_by_name`: their values, and bounds on the errors of these."""
+    """Two tables of the rows of `extremes_by_name`: the values, and bounds on their errors."""
     import pandas as pd
 
     tables = zip(*((row.ends, row.errors) for row in rows.values()), strict=True)

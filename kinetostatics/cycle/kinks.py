@@ -1,7 +1,7 @@
 """Crank angles over the period where loads, friction and laws of cams have kinks or jumps, of one design or of many.
 
-Friction has them where a rate or a force changes its sign, teeth where their force does; `sign_changes` finds these.
-Load functions that declare no kinks are sampled at the resolution of their scene (`load_functions`); what is narrower
+Friction has kinks where a rate or force changes its sign, teeth where their force does; `sign_changes` finds them.
+Load functions without `kinks` are sampled at the resolution of their scene (`load_functions`); narrower features
 may be missed.
 """
 
@@ -25,13 +25,13 @@ from ..numbers.brackets import find_roots
 from .load_functions import check_resolution, samples_of_functions, undeclared_functions
 
 SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
-"""Size of a kink, relative to its load's largest value, that counts, unless a load has more such kinks than that."""
+"""Least size of a kink relative to its load's largest value, and largest number of such kinks of a load."""
 SAMPLES = 720
-"""Crank angles of a turn between which a rate or force of friction is expected to change its sign once."""
+"""Crank angles of a turn between which a friction rate or force changes its sign at most once."""
 FINE_SAMPLES = 1440
 """The same for one design."""
 SAMPLE_OFFSET = 1e-3
-"""Crank angle of the first sample, rad: no sample stands at a dead centre."""
+"""Crank angle of the first sample, rad: no sample is at a dead centre."""
 MAX_VERTEX = 0.1
 """Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
 ANGLE_TOLERANCE = 1e-9
@@ -48,10 +48,10 @@ def has_kinks(solution, name, tolerance=KINK_TOLERANCE):
 
 
 def design_kinks(solution, tolerance=KINK_TOLERANCE):
-    """Kinks of all designs of a solution, of loads with very many those above `tolerance` times its largest value.
+    """Kinks of all designs of a solution; of loads with many only those above `tolerance` times the largest value.
 
-    Returns their crank angles (1 or designs, K), NaN where a design has fewer, and the largest kink left out, relative
-    to its load's largest value.
+    Returns the crank angles (1 or designs, K), NaN where a design has fewer, and the largest kink left out, relative
+    to the largest value of its load.
     """
     sources, largest_left_out = [law_kinks(solution)[None]], 0.0
     if has_sign_changes(solution):
@@ -96,7 +96,7 @@ def declared_kinks(motion):
 
 
 def _wrapped(angle, period):
-    """Crank angles in [0, period); those within `ANGLE_TOLERANCE` below the period are 0 but for rounding."""
+    """Crank angles in [0, period); those within `ANGLE_TOLERANCE` below the period become 0."""
     angle = np.mod(angle, period)
     return np.where(angle > period - ANGLE_TOLERANCE, 0.0, angle)
 
@@ -114,7 +114,7 @@ def _period_starts(part, solution):
 
 
 def has_sign_changes(solution):
-    """Whether friction, or the side of teeth, may put kinks into forces."""
+    """Whether friction, or a change of tooth flank, may cause kinks of forces."""
     return bool(solution.friction.acting or solution.mechanism.sign_forces)
 
 
@@ -124,7 +124,7 @@ def _sign_changes_of(solution, samples):
 
 
 def sign_changes(function, period, samples):
-    """Which of several functions change their signs, and at which crank angles, both (designs, K), else NaN.
+    """Index of the function that changes its sign, and the crank angle, both (designs, K); NaN pads the rows.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def sign_changes(function, period, samples):
         From crank angles (1 or designs, N) to a sequence of arrays that broadcast with them: one for each function.
     period : float
     samples : int or array
-        Crank angles over the period, rising, or their number: between two of them each function changes its sign once
+        Crank angles over the period, rising, or their number. Between two of them each function changes its sign once
         at most, or twice where its size has a minimum.
     """
 
@@ -174,10 +174,10 @@ def _values_at(evaluate, designs, design, row, angle):
 
 
 def _sign_change_brackets(evaluate, values, angle):
-    """Crank angles before and after each sign change, and which function, (designs, K); values (functions, designs, N).
+    """Crank angles before and after each sign change, and the index of the function, (designs, K).
 
-    Where the parabola through three samples of one sign has its vertex near zero, the function is evaluated there: it
-    may change its sign twice.
+    `values` are (functions, designs, N). Where the parabola through three samples of one sign has its vertex near zero,
+    the function is also evaluated at the vertex, because it may change its sign twice.
     """
     sign = np.signbit(values)
     row, design, place = np.nonzero((sign[..., :-1] != sign[..., 1:]) & ~np.isnan(np.diff(values)))

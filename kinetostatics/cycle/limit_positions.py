@@ -1,7 +1,7 @@
 """The period over which results are reduced: pieces, kinks, gaps, limit positions, and limits of a quantity there.
 
-Rates and forces change ever faster toward a limit position, so pieces get narrower there. Samples without a correct
-digit are left out; the limits of the quantity from both sides replace them.
+Rates and forces change faster and faster toward a limit position, so pieces get narrower there. Samples without a
+correct digit are left out; the limits of the quantity from both sides replace them.
 """
 
 from dataclasses import dataclass, field
@@ -23,13 +23,13 @@ MAX_WIDTH = TURN / 8
 NEAR = 0.01
 """Closure margin below which pieces get narrower toward the limit position."""
 MAX_CONDITION = 1e14
-"""Condition from which a value has less than two correct digits and is left out."""
+"""Condition above which a value has less than two correct digits and is left out."""
 MAX_LIMIT_CONDITION = 1e12
 """Condition up to which values are used to extrapolate to a limit."""
 EDGE_DISTANCES = 0.02 * 2.0 ** -np.arange(26)
 """Distances of added edges from a limit position, rad, on both sides."""
 LIMIT_DISTANCES = 0.1 * 2.0 ** (-np.arange(120) / 3)
-"""Distances of the samples for a limit from its limit position, rad; every third is half as far."""
+"""Distances of the samples for a limit from its limit position, rad; every third distance is half the previous one."""
 MIN_GROWTH = 1.15
 """Growth of the change per halved distance above which a quantity grows without bound."""
 MIN_ANGLE_STEP = 2.0**-50
@@ -38,7 +38,7 @@ MIN_ANGLE_STEP = 2.0**-50
 
 @dataclass(frozen=True, eq=False)
 class Turn:
-    """Pieces of the period of one design, and samples at their points; made by `Turn.of`.
+    """Pieces of the period of one design, and samples at their points; `Turn.of` returns them.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Turn:
     jumps : array
         The `kinks` that may be jumps.
     passed : array
-        The change points among `limits` that the mechanism passes, where forces grow; empty unless made for `forces`.
+        The change points among `limits` that the mechanism passes, where forces grow; empty unless `forces` is True.
     extrema : dict
         Extrema by quantity, cached.
     """
@@ -72,7 +72,7 @@ class Turn:
 
     @classmethod
     def of(cls, solution, forces=False):
-        """Turn of a solution, whatever its own crank angles; `forces` adds the change points that it passes.
+        """Turn of a solution, independent of its crank angles; `forces` adds the change points that it passes.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class Turn:
 
     @cached_property
     def even(self):
-        """The solution at even crank angles, at which friction is looked at."""
+        """The solution at even crank angles, for the tests of friction."""
         return self.at.moved_to(np.linspace(0.0, self.period, round(FINE_SAMPLES * self.period / TURN), endpoint=False))
 
     @property
@@ -117,7 +117,7 @@ class Turn:
 
     @cached_property
     def condition(self):
-        """Condition at each sample; ones without computing it where no limit position is near."""
+        """Condition at each sample; 1 where no limit position is near."""
         return self._condition(self.at) if self.limits.size else np.ones(self.angle.size)
 
     def _condition(self, solution):
@@ -125,7 +125,7 @@ class Turn:
             return solution.condition
         found = solution._condition_with_reactions
         distance = (solution.crank_angle[:, None] - self.passed + self.period / 2) % self.period - self.period / 2
-        with np.errstate(divide="ignore"):  # forces grow as one over it, also at 0, near which angles are exact
+        with np.errstate(divide="ignore"):  # forces grow as 1 / distance, also at 0, near which angles are exact
             return np.fmax(found, 1.0 / np.abs(distance).min(axis=-1))
 
     @cached_property
@@ -167,7 +167,7 @@ class Turn:
         """Limit of a function of a solution at a limit position, from one side (+1: from greater crank angles).
 
         `size` is the size of the function elsewhere. Infinite if it grows without bound, NaN if no values with correct
-        digits are near enough.
+        digits are near.
         """
         angle, distance = float(angle % self.period), LIMIT_DISTANCES
         if (angle, side) not in self._beside_limits:

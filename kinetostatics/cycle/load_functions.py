@@ -1,6 +1,6 @@
-"""Load functions of the user's that declare no kinks: sampled at a resolution, checked for what it misses.
+"""User's load functions without `kinks`: sampled at a resolution, and tested for features missed by it.
 
-What is narrower than the resolution of a scene may be missed, so results state it. A function must repeat after its
+Features narrower than the resolution of a scene may be missed, so results state it. A function must repeat after its
 period.
 """
 
@@ -19,19 +19,19 @@ from .piecewise import rolled
 FUNCTION_STEP = math.radians(0.05)
 """Default step of crank angles, rad, at which load functions without declared kinks are sampled."""
 MIN_FUNCTION_STEP, MAX_FUNCTION_STEP = 1e-5, math.radians(0.25)
-"""Limits of the step, rad: memory, and the widest pulse that may be missed."""
+"""Limits of the step, rad, by memory and by the widest pulse that may be missed."""
 ROUGHNESS = 1e-5
-"""Fourth difference, relative to the largest value, of a function that is not smooth: by default of a 64th harmonic."""
+"""Fourth difference, relative to the largest value, above which a function is not smooth: that of a 64th harmonic."""
 BLOCK_VALUES = 2**20
-"""Values of such functions that are computed at a time."""
+"""Number of values of load functions computed at a time."""
 SPLIT_SAMPLES = 4
-"""Samples at which a long stretch of a function that is not smooth is split."""
+"""Number of samples between splits of a long rough stretch."""
 SECTION_ANGLES, SECTIONS = 33, 9
-"""Crank angles that section an interval with a jump, and how often they do, to its last digits."""
+"""Crank angles that divide an interval with a jump, and number of divisions down to its last digits."""
 JUMP_TOLERANCE = 1e-6
 """Change of a function in the last section, relative to its largest value, above which it jumps."""
 MAX_SHOWN_FEATURES = 3
-"""Missed features of a load in texts."""
+"""Largest number of missed features of a load in texts."""
 MAX_PERIODS = 6
 """Periods after which a function is tested for repetition if it does not repeat after one."""
 REPEAT_TOLERANCE = 1e-6
@@ -58,7 +58,7 @@ def function_step(owner, name, value, largest=MAX_FUNCTION_STEP):
 
 
 def resolution_note(scene, name=None):
-    """Sentence on the resolution of load functions without kinks in a scene or solution; "" where none acts.
+    """Sentence on the resolution of load functions without kinks in a scene or solution; "" if there are none.
 
     With the `name` of a quantity "" too if it does not depend on loads.
     """
@@ -67,7 +67,7 @@ def resolution_note(scene, name=None):
         return ""
     return (
         f"load functions without `kinks` ({', '.join(titles)}) are sampled every {_degrees(scene.resolution)} deg of "
-        "the crank: what is narrower may be missed"
+        "the crank; narrower features may be missed"
     )
 
 
@@ -92,7 +92,7 @@ class MissedFeatures(NamedTuple):
     angle : array (K,)
         Crank angles, rad.
     size : array (K,)
-        Values there, less those that the samples around let expect.
+        Values there, less the values interpolated from neighbouring samples.
     """
 
     load: str
@@ -109,9 +109,9 @@ class MissedFeatures(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class ResolutionCheck:
-    """Features of load functions that the resolution of a scene misses; made by `Scene.check_resolution`.
+    """Features of load functions that the resolution of a scene misses; `Scene.check_resolution` returns it.
 
-    Its length is their number.
+    Its length is the number of missed features.
 
     Attributes
     ----------
@@ -120,8 +120,8 @@ class ResolutionCheck:
     step : float
         Finer step of the check, rad.
     missed : tuple of MissedFeatures
-        For each load with missed features its name (`load`), the `unit` of its value, the crank angles (`angle`, rad)
-        and by how much the function differs there from what its samples let expect (`size`).
+        By load: its name (`load`), the `unit` of its value, the crank angles (`angle`, rad) and the difference of its
+        values from those interpolated between the samples (`size`).
 
     Examples
     --------
@@ -196,7 +196,7 @@ class FunctionSamples(NamedTuple):
 
     @property
     def negligible(self):
-        """Fourth difference that counts as smooth, (designs, 1)."""
+        """Largest fourth difference of a smooth function, (designs, 1)."""
         return ROUGHNESS * np.fmax.reduce(abs(self.value), axis=-1)[:, None]
 
     @property
@@ -213,7 +213,7 @@ class FunctionSamples(NamedTuple):
     def missed(self, step):
         """`MissedFeatures` at crank angles a finer step apart: where values differ from Bessel's interpolation formula.
 
-        Differences up to the fourth differences of the samples around are expected, so jumps that these show are none.
+        Differences up to the fourth differences of neighbouring samples are expected and do not count.
         """
         count = round(self.solution.period / step)
         angle = (np.arange(count) + 0.5) * (self.solution.period / count)
@@ -224,7 +224,7 @@ class FunctionSamples(NamedTuple):
         excess = _values_of(self.item, self.solution, angle) - expected
         rough = np.max([rolled(self.change, -at) for at in range(-2, 4)], axis=0)
         excess = np.where(abs(excess) > (self.negligible + rough)[:, place], excess, 0.0)
-        excess = excess[abs(excess).argmax(axis=0), np.arange(count)]  # of the design where it is largest
+        excess = excess[abs(excess).argmax(axis=0), np.arange(count)]  # from the design with the largest excess
         found = np.flatnonzero(excess)
         runs = np.split(found, np.flatnonzero(np.diff(found) > 1) + 1) if found.size else []
         tops = np.array([run[abs(excess[run]).argmax()] for run in runs], dtype=int)
@@ -234,7 +234,7 @@ class FunctionSamples(NamedTuple):
 def undeclared_jumps(function, places, step):
     """Crank angles at which a function of the crank angle jumps between neighbouring `rough_places`, (K,), rising.
 
-    These are one to four samples, of a `step`, apart.
+    The places are one to four steps apart.
     """
     gaps = np.diff(places)
     narrow = gaps < (SPLIT_SAMPLES + 0.5) * step
@@ -285,13 +285,13 @@ def repeating_problem(solution):
         if turns is None:
             return (
                 f"{found}; a force must repeat after its period of {period / TURN:.6g} turns: take its crank angle as "
-                "np.mod(motion.crank_angle, period), or give the period it has"
+                "np.mod(motion.crank_angle, period), or state its period"
             )
         whole = turns * period / TURN
         remedy = f"period={2 * whole:.6g}*pi"
         if "period" not in vars(item):
             remedy = f"a Table with {remedy}, or a function with an attribute {remedy}"
-        return f"{found}, and repeats after {whole:.6g} turns only: give {remedy}"
+        return f"{found}, and repeats only after {whole:.6g} turns: give {remedy}"
     return None
 
 

@@ -1,14 +1,14 @@
 """Mean powers of a machine over its period: friction by joint, dampers, loads, drive; mechanical efficiency.
 
-Over a period, masses, weight and springs return all the energy that they take. The power that drive and other loads put
-in is taken out by them or lost:
+Over a period, masses, weight and springs return all the energy that they store. The power put in by the drive and other
+loads is taken out by them or lost:
 
     given = taken + lost        efficiency = taken / given = taken / (taken + lost)
 
 (Artobolevskii, *Theory of Mechanisms and Machines*: the work of the useful resistances over that of the driving forces,
-in a period of steady motion.) The work over the whole period decides whether drive or a load gives or takes: an
-engine's gas force gives and its drive takes, a pump's the other way round. An idling machine takes nothing: its
-efficiency is 0, as it is where load and drive both give, for example where friction holds a weight that is let down.
+in a period of steady motion.) The sign of the work over the whole period decides whether the drive or a load gives or
+takes power: an engine's gas force gives and its drive takes, a pump's the reverse. An idling machine has the efficiency
+0, and so has a machine in which load and drive both give, for example where friction holds a weight that is let down.
 """
 
 import warnings
@@ -37,19 +37,19 @@ POWER_TOLERANCE = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Losses:
-    """Mean powers over time of one design over its period, W; made by `losses`.
+    """Mean powers over time of one design over its period, W; `losses` returns them.
 
     Attributes
     ----------
     solution : Solution
     friction : dict of str to float
-        Lost by joint.
+        Power lost, by joint.
     dampers : dict of str to float
-        Lost by damper.
+        Power lost, by damper.
     loads : dict of str to float
-        Taken by each load that is no damper and, unlike weight and springs, stores no energy; negative if it gives.
+        Power taken by each load except dampers, weight and springs; negative if the load gives power.
     drive : float
-        Given by the drive; negative if it takes, as of an engine.
+        Power given by the drive; negative if it takes power, as in an engine.
     turn_time : float
         Duration of a turn of the crank, s.
     powers : dict of str to function
@@ -79,27 +79,27 @@ class Losses:
 
     @property
     def lost(self):
-        """Lost by joint and damper, W."""
+        """Power lost, by joint and damper, W."""
         return self.friction | self.dampers
 
     @property
     def total(self):
-        """Lost by friction and dampers, W."""
+        """Power lost by friction and dampers, W."""
         return sum(self.lost.values())
 
     @property
     def given(self):
-        """Put in by the drive and those loads that give, W."""
+        """Power put in by the drive and the loads that give power, W."""
         return sum(power for power in self._ports if power > 0)
 
     @property
     def taken(self):
-        """Taken out by those loads that take, and by the drive if it does, W: the useful power."""
+        """Useful power, W: taken out by loads, and by the drive if its power is negative."""
         return -sum(power for power in self._ports if power < 0)
 
     @property
     def efficiency(self):
-        """Mechanical efficiency, taken / (taken + lost); NaN where nothing is taken or lost."""
+        """Mechanical efficiency, taken / (taken + lost); NaN without power."""
         whole = self.taken + self.total
         return self.taken / whole if whole > 0 else np.nan
 
@@ -128,14 +128,14 @@ class Losses:
         return with_resolution(pd.DataFrame(columns, pd.Index(names, name="lost at")), self.solution)
 
     def power(self, at):
-        """Lost by friction and dampers at the crank angles of a solution, W."""
+        """Power lost by friction and dampers at the crank angles of a solution, W."""
         return sum((power(at) for power in self.powers.values()), np.zeros(at.crank_angle.shape))
 
     def __str__(self):
         if np.isnan(self.efficiency):
             return "no power is taken or lost"
         return (
-            f"of {self.taken + self.total:.6g} W put in, {self.taken:.6g} W are taken and {self.total:.6g} W lost: "
+            f"of {self.taken + self.total:.6g} W put in, {self.taken:.6g} W is used and {self.total:.6g} W lost: "
             f"efficiency {self.efficiency:.6g}"
         )
 
@@ -144,14 +144,14 @@ class Losses:
 
 
 def lose(*solutions):
-    """Whether any of the machines has friction and all of them turn, so that losses can be shown."""
+    """Whether losses can be shown: a machine has friction, and all machines turn."""
     return any(s.friction for s in solutions) and all(np.all(np.asarray(s.crank_speed)) for s in solutions)
 
 
 def losses(solution) -> Losses:
-    """Mean powers over time that a machine takes, gives and loses over the period of a solution.
+    """Mean powers of a machine over the period of a solution: put in, taken out and lost.
 
-    By integrals of Chebyshev series between the crank angles where friction jumps or has a kink (`means`).
+    They are integrals of Chebyshev series between the crank angles where friction jumps or has a kink (`means`).
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def losses(solution) -> Losses:
     Warns
     -----
     ConditionWarning
-        A load is so uneven that fewer digits of the powers are right.
+        A load is too uneven for full accuracy; the message gives the error.
     """
     turn = closed_turn(solution, "losses")
     at = turn.at.moved_to(turn.angle[turn.usable])
@@ -193,7 +193,7 @@ def losses(solution) -> Losses:
     found, errors, *_ = means(by_angle, turn, floor)
     if np.any(errors > WARNING_ERROR * sizes + floor):
         error = np.max(errors[1:]) / found[0]
-        text = f"losses: powers are right to about {error:.2g} W only, so uneven are the loads"
+        text = f"losses: powers are accurate only to about {error:.2g} W, because the loads are uneven"
         warnings.warn(text, ConditionWarning, stacklevel=3)
     drive, *rest = np.where(np.abs(found) <= POWER_TOLERANCE * sizes, 0.0, found)[1:] / found[0]
     mean = dict(zip((*lost, *loads), map(float, rest), strict=True))

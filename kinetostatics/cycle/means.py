@@ -1,4 +1,4 @@
-"""Means over the period: integrals of the series on pieces between the kinks, jumps and sign changes of functions."""
+"""Means over the period: integrals of series on pieces between the kinks, jumps and sign changes of functions."""
 
 import math
 import warnings
@@ -18,9 +18,9 @@ from .piecewise import Pieces
 SPLIT_TOLERANCE = 1e-14
 """Error of the integral over a piece, relative to the whole and divided by the pieces, at which it is resolved."""
 WARNING_ERROR = 1e-9
-"""Relative error of a mean above which a warning is due."""
+"""Relative error of a mean above which a warning follows."""
 ROUNDINGS = 4
-"""Roundings of a value on its way into a mean, at most, besides the sum of its piece: weight, product with its width,
+"""Largest number of roundings of a value in a mean, besides the sum of its piece: weight, product with its width,
 sum of all pieces (rounded once), quotient by the period."""
 TERM_ROUNDING = 1e-14
 """Rounding of a sum relative to its largest term."""
@@ -31,9 +31,9 @@ ZERO_MEAN = 1e-12
 def mean_absolute_torque(solution):
     """Integral mean of the absolute balancing torque over the period of the solution, N m.
 
-    By Chebyshev series between changes of sign. Pieces are halved until the series are exact to rounding, which closes
-    in on jumps and kinks. Load functions that declare no kinks are sampled at the `resolution` of the solution; a
-    narrower pulse may be missed.
+    The integral uses Chebyshev series between changes of sign. Pieces are halved until the series are exact to
+    rounding, which locates jumps and kinks. Load functions without `kinks` are sampled at the `resolution` of the
+    solution; a narrower pulse may be missed.
 
     Raises
     ------
@@ -45,8 +45,8 @@ def mean_absolute_torque(solution):
     Warns
     -----
     ConditionWarning
-        The torque grows without bound at a limit position, so the mean is infinite; values around it without a correct
-        digit do not count; or the load is so uneven that fewer digits of the mean are right.
+        The torque grows without bound at a limit position, so the mean is infinite; values without a correct
+        digit do not count; or the load is too uneven for full accuracy.
     """
     turn = closed_turn(solution, "mean torque")
     peaks = extrema(solution, "balancing_torque")
@@ -55,7 +55,7 @@ def mean_absolute_torque(solution):
     if not np.isinf(peaks.value).any():
         mean, error, floor, _ = _mean_of_absolute_torque(turn)
         if error > WARNING_ERROR * mean + floor:
-            words.append(f"mean torque: it is right to about {error:.2g} N m of {mean:.6g} only, so uneven is the load")
+            words.append(f"mean torque: it is accurate only to {error:.2g} N m of {mean:.6g}: the load is uneven")
     for text in filter(None, words):
         warnings.warn(text, ConditionWarning, stacklevel=2)
     return mean
@@ -67,10 +67,10 @@ class MeanErrors(NamedTuple):
     Attributes
     ----------
     rounding : float
-        Proven bound on the rounding error: distance from the same sum, of the same points and pieces, in exact
+        Proven bound on the rounding error: difference from the same sum of points and pieces in exact
         arithmetic.
     quadrature : float
-        Estimate of the distance of that sum from the integral mean.
+        Estimate of the difference of the exact sum from the integral mean.
     """
 
     rounding: float
@@ -78,7 +78,7 @@ class MeanErrors(NamedTuple):
 
 
 def mean_absolute_torque_errors(solution):
-    """`MeanErrors` of `mean_absolute_torque`, N m; both infinite where the mean is.
+    """`MeanErrors` of `mean_absolute_torque`, N m; both infinite if the mean is infinite.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def drive_means(solution):
     size = math.fsum(pieces.whole(np.abs(values[0, :, 1:-1]))) / turn.period
     if error > WARNING_ERROR * size + floor:
         text = f"mean torque: it is right to about {error:.2g} N m of {torque:.6g} only, so uneven is the load"
-        warnings.warn(text, ConditionWarning, stacklevel=4)
+        warnings.warn(text, ConditionWarning, stacklevel=5)
     torque = 0.0 if abs(torque) <= ZERO_MEAN * size + floor else float(torque)
     energy = TURN * torque * (-1.0 if np.any(np.asarray(at.crank_sense) < 0.0) else 1.0)
     power = energy / (TURN * float(time)) if varies else torque * float(at.crank_speed)
@@ -156,7 +156,7 @@ def drive_means(solution):
 
 
 def closed_turn(solution, owner):
-    """`Turn` of a single design; refused where it does not close all round or jams."""
+    """`Turn` of a single design; an error if it does not close all round or jams."""
     require_single(solution, owner, "balancing_torque")
     turn = solution.sampled
     if turn.gaps:

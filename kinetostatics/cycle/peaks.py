@@ -16,7 +16,7 @@ TINY = np.finfo(float).tiny
 _own = threading.local()
 _AROUND = np.arange(-REACH, REACH + 1)
 INNER = polynomial.polyfromroots(_AROUND[1:-1]).tolist()
-"""Coefficients of the polynomial that vanishes at all samples around a peak but the outermost two."""
+"""Coefficients of the polynomial that vanishes at all samples around a peak except the outermost two."""
 COMPARED = {"<": operator.lt, "<=": operator.le, "==": operator.eq, ">=": operator.ge}
 _WHOLE = math.factorial(2 * REACH)
 THROUGH = np.round(np.linalg.inv(np.vander(_AROUND.astype(float), increasing=True)) * _WHOLE) / _WHOLE
@@ -32,7 +32,7 @@ def peak(values, sign=1.0):
         height, shift = sign * values[design, place], 0.0 * place
         error = height
     else:
-        # a peak rises above its sample by less than that rises above its neighbours
+        # a peak is above its sample by less than the sample is above its neighbours
         before, here, after = sign * _around(values, design, place, 1)
         bend = abs(before - 2.0 * here + after)
         rivals = ~(here + bend < _highest(here - bend, design, len(values))[design])
@@ -79,9 +79,9 @@ def _interpolate(near):
 def between(near, chosen, sqrt):
     """Height of each peak, its distance from the highest sample, and an estimate of the error of the height.
 
-    The polynomial through all samples gives the height, or the parabola through three where the others do not fit, as
-    beyond a jump, or the sample itself where not even three fit. Values of one sign may be a magnitude with a corner at
-    zero; their squares are interpolated. The error is the difference from two samples less.
+    The height follows from the polynomial through all samples; from the parabola through three where the others do not
+    fit, as beyond a jump; or from the sample itself. Values of one sign may be a magnitude with a corner at zero; their
+    squares are interpolated. The error is the difference from a polynomial with two samples less.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def between(near, chosen, sqrt):
     top = _polynomial(series, place)
     fewer = top - _polynomial(INNER, place) * (series[-2] + series[-1] * place)
 
-    bent = chosen("<", first, 0.0, chosen("<", last, 0.0, bend, 0.0), 0.0)  # false where a neighbour is infinite
+    bent = chosen("<", first, 0.0, chosen("<", last, 0.0, bend, 0.0), 0.0)  # false if a neighbour is infinite
 
     def if_smooth(one, other):
         return chosen("<", bent, 0.0, one, other)
@@ -143,7 +143,7 @@ def _series(curve):
 
 
 def _polynomial(series, place):
-    """Polynomial by even and odd powers apart, which run in parallel."""
+    """Polynomial; even and odd powers run in parallel."""
     square = place * place
     even, odd = (reduce(lambda value, number: number + value * square, reversed(series[k::2])) for k in (0, 1))
     return even + odd * place
@@ -155,7 +155,7 @@ def lowest(values, step):
     place = np.clip(values.argmin(axis=-1), REACH, values.shape[-1] - 1 - REACH)
     near = values[row, place + _AROUND[:, None]]
     bend = (near[REACH - 1] - 2.0 * near[REACH] + near[REACH + 1]) / (step * step)
-    height, shift, _ = _interpolate(1.0 - near)  # no margin exceeds 1, so that none of these changes its sign
+    height, shift, _ = _interpolate(1.0 - near)  # margins are at most 1, so these do not change their sign
     return np.minimum(1.0 - height, near.min(axis=0)), (place + shift - reach) * step, bend
 
 

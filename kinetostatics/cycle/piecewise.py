@@ -18,25 +18,25 @@ from ..numbers.lazy import cached_property
 POINTS = 24
 """Points of a piece."""
 POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
-"""The same where there are more edges than a number."""
+"""Number of points where there are more edges than a limit, and that limit."""
 TAIL_TERMS = 3
-"""Last coefficients of a series that tell its error."""
+"""Number of last coefficients of a series that estimate its error."""
 TAIL = 2e-14
-"""Size of the last coefficients of a series, relative to its largest value, that is rounding."""
+"""Size of the last coefficients of a series, relative to its largest value, that counts as rounding."""
 MAX_HALVINGS = 60
 MAX_PIECES = 20_000
 MAX_UNRESOLVED = 100
-"""Unresolved pieces of a turn, besides those at first, above which a function is rough and they are not halved."""
+"""Largest number of additional unresolved pieces of a turn; with more a function is rough and its pieces are kept."""
 DENSE = 8
-"""Places for each point of a series at which extremes are sought."""
+"""Number of places per point of a series in the search for extremes."""
 MIN_WIDTH = 1e-13
 """Width of a piece, relative to the period, below which it is not split: it contains a jump."""
 JUMP_OFFSET = 2.0**-44
-"""Distance of the crank angles on both sides of a jump from it, rad."""
+"""Distance from a jump of the crank angles on its two sides, rad."""
 NEWTON_STEPS, NEWTON_TOLERANCE = 5, 1e-9
-"""Steps of Newton's method at most, and the last change of a place in [-1, 1]: the next one would be rounding."""
+"""Largest number of Newton steps, and last change of a place in [-1, 1]; a further step would be rounding."""
 CHOPPED = 2e-3
-"""Size of coefficients at the end of a series, relative to the rounding of values, that are set to 0 for its slope."""
+"""Last coefficients below this size, relative to the rounding of values, are 0 in the slope of a series."""
 
 
 class Rule(NamedTuple):
@@ -84,8 +84,8 @@ def _weights(count):
 class Pieces:
     """Pieces of a period between edges, each with `count` points, of one design or of several.
 
-    Values are (..., pieces, points). Edges rise from the start of the period to its end, those of several designs one
-    design after the other.
+    Values are (..., pieces, points). Edges rise from the start to the end of the period; those of several designs
+    follow one another.
     """
 
     edges: np.ndarray
@@ -93,7 +93,7 @@ class Pieces:
 
     @classmethod
     def between(cls, breaks, period, width, count=None):
-        """Pieces of designs between their breaks (designs, K), NaN where one has fewer, none wider than `width`."""
+        """Pieces of designs between their breaks (designs, K), padded with NaN; no piece is wider than `width`."""
         ends = np.broadcast_to([0.0, period], (len(breaks), 2))
         breaks = np.sort(np.column_stack([ends[:, 0], breaks]))
         kept = (np.diff(breaks, prepend=-1.0) > 4.0 * JUMP_OFFSET) & (breaks < period - 4.0 * JUMP_OFFSET)
@@ -103,7 +103,7 @@ class Pieces:
 
     @cached_property
     def _inside(self):
-        """Whether a piece, not the end of a design, follows each edge but the last."""
+        """Whether a piece, not the end of a design, follows each edge except the last."""
         return np.diff(self.edges) >= 0.0
 
     @cached_property
@@ -215,11 +215,11 @@ class Pieces:
         return chebyshev.chebval(place, series[:, piece], tensor=False).reshape(shape)
 
     def weights_at(self, place):
-        """Weights (K, points) of the values at the points of a piece in those at places from -1 to 1."""
+        """Weights (K, points) of the values at the points of a piece, for interpolation at places from -1 to 1."""
         return waves(self.count, place).T @ rule(self.count).series
 
     def weights_up_to(self, place):
-        """The same in the integrals from -1 to places."""
+        """Weights for the integrals from -1 to places."""
         own = rule(self.count)
         return product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
 
@@ -234,7 +234,7 @@ class Pieces:
         return np.einsum("np,np->p", series[:, own], waves(self.count, place)), pieces[own], place
 
     def peaks(self, values):
-        """Highest value of each design, its piece, and its place there, each (designs,); NaN where a value is.
+        """Highest value of each design, its piece, and its place there, each (designs,); NaN if a value is NaN.
 
         A series cannot exceed the sum of the sizes of its terms; only pieces that may exceed all points are examined.
         """
@@ -257,7 +257,7 @@ class Pieces:
         return max(self.largest(values)[0], -self.largest(-values)[0], key=abs)
 
     def split(self, marked):
-        """Pieces, those in the mask `marked` halved."""
+        """Pieces, with those in the mask `marked` halved."""
         place = np.flatnonzero(self._inside)[marked] + 1
         return Pieces(np.insert(self.edges, place, self.middle[marked]), self.count)
 
@@ -272,7 +272,7 @@ class Pieces:
         return np.column_stack([self.low + JUMP_OFFSET, self.angle, self.high - JUMP_OFFSET])
 
     def resolved(self, values, evaluate, rough):
-        """Pieces halved until the series of several functions are exact enough; these, values, and rough pieces.
+        """Pieces, halved until the series of functions are accurate; values on them, and a mask of rough pieces.
 
         Parameters
         ----------
@@ -281,7 +281,7 @@ class Pieces:
         evaluate : function
             From crank angles (P, points + 2) and the designs (P,) of these pieces to values.
         rough : function
-            From pieces, errors of their series (functions, pieces) and values to a mask of those to halve.
+            From pieces, errors of their series (functions, pieces) and values to a mask of the pieces to halve.
         """
         pieces, errors = self, self.errors(values)
         most = self.sums(np.ones(len(self.half), int)) + MAX_UNRESOLVED * self.period / TURN
@@ -309,13 +309,13 @@ class Pieces:
         values : array (1 or 2, pieces, points)
             A function, or the components of a vector, whose magnitude turns.
         level : array (pieces,)
-            Range of values that is rounding.
+            Range of values that counts as rounding.
 
         Returns
         -------
         angle, piece : array (K,)
         starts : array (pieces,) of bool
-            Also where it is level before or after; the last piece is before the first.
+            Also True where it is level before or after; the last piece precedes the first.
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
         large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
@@ -342,7 +342,7 @@ class Pieces:
     def _roots(self, dense, slope, asked, function, series):
         """Places and pieces of the roots of functions given at the dense places (places, pieces), by Newton.
 
-        `function` returns value and slope from the values of all series; two roots between dense places are found too.
+        `function` returns value and slope from the values of all series; it also finds two roots between dense places.
         """
         places = rule(self.count).places
 
@@ -366,7 +366,7 @@ class Pieces:
         one, two = evaluate(piece, low)[0], evaluate(piece, high)[0]
         with np.errstate(divide="ignore", invalid="ignore"):
             place = np.clip(np.nan_to_num(low + (high - low) * one / (one - two)), low, high)
-            moving = np.ones(place.size, dtype=bool)  # a root must not depend on those found beside it
+            moving = np.ones(place.size, dtype=bool)  # a root must not depend on other roots
             for _ in range(NEWTON_STEPS):
                 (value, rate), last = evaluate(piece, place), place
                 step = place - value / rate
@@ -378,12 +378,12 @@ class Pieces:
 
 
 def product(values, matrix):
-    """Values (..., N) times a matrix (M, N); by BLAS a row would depend on those beside it."""
+    """Values (..., N) times a matrix (M, N); by BLAS a row would depend on its neighbours."""
     return np.einsum("...n,mn->...m", values, matrix)
 
 
 def rolled(values, step):
-    """Values moved by some places along the last axis, round its end; `np.roll` takes five times as long on a few."""
+    """Values rotated along the last axis; `np.roll` takes five times as long on a few."""
     return np.concatenate([values[..., -step:], values[..., :-step]], axis=-1)
 
 
@@ -394,7 +394,7 @@ def highest(height, group):
 
 
 def waves(count, place):
-    """Chebyshev polynomials (count, K) at places from -1 to 1, beyond by rounding at most."""
+    """Chebyshev polynomials (count, K) at places from -1 to 1, outside only by rounding."""
     return np.cos(np.arange(count)[:, None] * np.arccos(np.clip(place, -1.0, 1.0)))
 
 
@@ -406,7 +406,7 @@ def _errors(values, half, count):
 
 
 def point_count(edges):
-    """Points of the pieces between edges: fewer where there are many."""
+    """Points of the pieces between edges: fewer if there are many."""
     return next((points for most, points in POINTS_BY_EDGES if len(edges) > most), POINTS)
 
 
@@ -420,7 +420,7 @@ def _slope_of_size(value, first, second):
 
 
 def edges_between(breaks, width):
-    """Edges at breaks, and evenly between those more than `width` apart."""
+    """Edges at breaks, and even edges between breaks farther apart than `width`."""
     gaps = np.diff(breaks)
     parts = np.maximum(np.ceil(gaps / width - 1e-9), 1.0).astype(int)
     place = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)

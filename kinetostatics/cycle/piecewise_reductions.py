@@ -1,6 +1,6 @@
 """Reductions of quantities on pieces of the period, of many designs, and the weights of the values in each.
 
-A reduction is, near a design, a sum of the values at the points with weights: those of the series at the peak, or of
+Near a design a reduction is a weighted sum of the values at the points: weights of the series at the peak, or of
 the integral. The weights give the derivatives of a reduction from those of the values.
 """
 
@@ -22,7 +22,7 @@ ERROR_FACTOR = 4.0
 def averaged(pieces, output, values, vector=False):
     """Mean, rms or amplitude of a harmonic of each design, (designs,), and weights (pieces, points) of the values.
 
-    Magnitudes of a `vector` change no sign.
+    Magnitudes of a `vector` do not change sign.
     """
     kind, order = output.reduction, output.order
     weights = pieces.half * rule(pieces.count).weights / pieces.period
@@ -43,7 +43,7 @@ def averaged(pieces, output, values, vector=False):
 def _weights_of_magnitudes(pieces, values):
     """Weights (pieces, points) of values in the integrals of their magnitudes.
 
-    Between two zeros the sign is that of the integral: a value at the start of a piece may be 0 or rounding.
+    Between two zeros the integral gives the sign; a value at the start of a piece may be 0 or rounding.
     """
     found = np.where(values < 0.0, -1.0, 1.0) * rule(pieces.count).weights
     series = pieces.series(values)
@@ -102,7 +102,7 @@ def _errors_of_peaks(pieces, values, errors, sides, vector):
 def estimated(pieces, output, values, vector=False):
     """Numbers (designs,) of an `Output`, and whether they are uncertain.
 
-    `values` (pieces, points + 2) are at `Pieces.checked`: of a `vector` its magnitude, for a peak the square of this.
+    `values` (pieces, points + 2) are at `Pieces.checked`; of a `vector` its magnitude, or for a peak its square.
     """
     errors = np.where(pieces.can_split, ERROR_FACTOR * pieces.errors(values), 0.0)
     inner = values[:, 1:-1]
@@ -124,12 +124,12 @@ def estimated(pieces, output, values, vector=False):
 
 
 def row_of(output, vectors):
-    """Quantity of an output, and whether its square is needed: a magnitude has a corner at zero, its square none."""
+    """Quantity of an output, and whether its square is needed: a magnitude, unlike its square, has a corner at 0."""
     return output.quantity, bool(vectors[output.quantity]) and output.reduction in PEAKS
 
 
 def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
-    """Pieces halved until outputs are certain, and values (pieces, points + 2) by `row_of` these.
+    """Pieces halved until outputs are certain, and values (pieces, points + 2) by `row_of` the outputs.
 
     Parameters
     ----------

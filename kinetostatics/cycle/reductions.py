@@ -3,9 +3,9 @@
 As text the reduction precedes the quantity: "largest O", "mean_absolute balancing_torque",
 "harmonic_2 balancing_torque", "ratio mean_absolute balancing_torque".
 
-"swing balancing_torque" is the energy, J, that a flywheel stores and returns while the crank gets the mean torque: the
-range of the integral of torque less mean over the crank angle. For a coefficient of fluctuation delta, the flywheel of
-textbooks is nearly swing / (delta omega^2) (`drive.flywheel`).
+"swing balancing_torque" is the energy, J, that a flywheel stores and returns if the crank gets the mean torque. It is
+the range of the integral of torque less its mean over the crank angle. For a coefficient of fluctuation delta, the
+textbook flywheel is nearly swing / (delta omega^2) (`drive.flywheel`).
 """
 
 import re
@@ -23,14 +23,14 @@ from ..numbers.formatting import heading
 from .peaks import blocks, peak, scratch
 
 PEAK_TOLERANCE = 1e-4
-"""Error of a peak, relative to it, above which the samples are too few; a hundredth of that relative to the range."""
+"""Largest error of a peak relative to the peak; relative to the range a hundredth of this. More samples if larger."""
 MEAN_TOLERANCE = 1e-2
-"""Error of a mean, relative to it, above which the samples are too few; a tenth of that relative to the peak."""
+"""Largest error of a mean relative to the mean; relative to the peak a tenth of this. More samples if larger."""
 SOLUTION_ANGLES = 360
-"""Crank angles of solutions whose numbers a function returns; they do not change what it returns."""
+"""Number of crank angles of solutions for functions; it does not affect their numbers."""
 PEAKS = ("largest", "largest_at", "smallest", "smallest_at", "largest_absolute", "range")
 OVER_THE_ANGLE = ("largest_at", "smallest_at", "swing")
-"""Reductions in proportion to the number of turns over which the same values come."""
+"""Reductions in proportion to the number of turns with the same values."""
 
 
 def signs(reduction):
@@ -86,14 +86,14 @@ def _harmonic(order, values):
 def gained(values):
     """Integral over the crank angle, rad, of values less their mean, at the same angles of one turn.
 
-    By their Fourier series: exact for the harmonics that the samples resolve, linear in the values.
+    It uses Fourier series: exact for the harmonics that the samples resolve, linear in the values.
     """
     count = values.shape[-1]
     series = np.fft.rfft(values)
     orders = np.arange(series.shape[-1])
     orders[0] = 1
     series = series / (1j * orders)
-    series[..., :: count // 2 if count % 2 == 0 else count] = 0.0  # mean, and harmonic of which only the sign is known
+    series[..., :: count // 2 if count % 2 == 0 else count] = 0.0  # mean, and the highest harmonic, known by sign only
     return np.fft.irfft(series, count)
 
 
@@ -110,7 +110,7 @@ MEANS: dict[str, Callable] = {
 }
 """By name: function of values (designs, N) evenly over the period to numbers."""
 REDUCTIONS = (*PEAKS, *MEANS)
-"""Names of reductions but harmonics."""
+"""Names of reductions except harmonics."""
 
 
 @dataclass(frozen=True)
@@ -120,11 +120,11 @@ class Output:
     Attributes
     ----------
     quantity : str
-        As for `quantities.components`; of a vector the magnitude is reduced.
+        As for `quantities.components`; a vector is reduced by its magnitude.
     reduction : str
         A name of `REDUCTIONS`, or "harmonic_K": amplitude of the K-th harmonic of the crank angle.
     ratio : bool
-        Whether the reference mechanism's value is divided by the design's: a dynamic coefficient.
+        True for the ratio of the reference mechanism's value to the design's: a dynamic coefficient.
     unit : str
         SI unit of the number; empty before `of`.
     """
@@ -143,23 +143,23 @@ class Output:
         Raises
         ------
         QuantityError
-            The mechanism has no such quantity; the message lists those it has.
+            The quantity is unknown; the message lists those of the mechanism.
         ParameterError
-            The quantity is a force that grows without bound at change points that the mechanism passes; or the swing
-            is not of a torque.
+            The quantity is a force that grows without bound at passed change points; or the swing
+            is not that of a torque.
         """
         unit, mechanism = quantity(scene, self.quantity).unit, scene.mechanism
         if self.reduction == "swing":
             if unit != "N m":
                 raise ParameterError(
-                    f"output {str(self)!r}: swing is the energy that a torque gives and takes in turn, of a quantity "
+                    f"output {str(self)!r}: swing is the energy that a torque exchanges, for a quantity "
                     f"in N m such as balancing_torque; {self.quantity} is in {unit}"
                 )
             unit = "J"
         if mechanism.grows(self.quantity):
             raise ParameterError(
                 f"output {str(self)!r}: {self.quantity} grows as one over the distance from change points that "
-                f"{mechanism.name} passes, so it has no mean and no largest value; ks.extremes tells where"
+                f"{mechanism.name} passes, so it has no mean and no largest value; ks.extremes gives the angles"
             )
         return replace(self, unit=unit)
 
@@ -189,7 +189,7 @@ class Output:
         return found * turns if self.reduction in OVER_THE_ANGLE else found
 
     def with_errors(self, values, turns=1):
-        """The same, and estimates of their errors; of means the difference from that of every other value."""
+        """Numbers as of `reduced`, and error estimates; of a mean the difference from that of every other value."""
         if self.reduction in PEAKS:
             found, error = _peaks(self.reduction, values)
             return found * turns if self.reduction in OVER_THE_ANGLE else found, error
@@ -206,18 +206,18 @@ class Output:
 
 @dataclass(frozen=True)
 class SolutionNumber:
-    """A number that a function returns from the solution of each design: an output of `sweep` and `design.optimise`.
+    """A function's number for the solution of each design: an output of `sweep` and `design.optimise`.
 
     Attributes
     ----------
     name : str
-        Heading, without the unit; goals and limits name it so.
+        Heading without the unit; goals and limits use this name.
     function : function
-        From a `Solution` to a float; for several workers one that can be pickled.
+        From a `Solution` to a float; several workers need one that can be pickled.
     unit : str
-        SI, or another that the function returns, as "h".
+        SI, or another unit of the function's number, such as "h".
     ratio : bool
-        Whether the reference mechanism's number is divided by the design's.
+        True for the ratio of the reference mechanism's number to the design's.
 
     Examples
     --------
@@ -253,11 +253,11 @@ class SolutionNumber:
         return f"{'ratio of ' * self.ratio}{self.name}"
 
     def of(self, scene) -> "SolutionNumber":
-        """The output itself, for its unit is that of the function."""
+        """The output itself; the function defines its unit."""
         return self
 
     def value(self, scene, reference=None):
-        """Number of a scene; a ratio is of the reference's number to it. Notes of the function are not shown."""
+        """Number of a scene; or the ratio of the reference's number to it. Notes of the function are not shown."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)
             found = float(self.function(scene.solve(SOLUTION_ANGLES)))
@@ -265,7 +265,7 @@ class SolutionNumber:
 
 
 def is_rough(output, found, error, size):
-    """Whether the error of an output exceeds `PEAK_TOLERANCE` or `MEAN_TOLERANCE`, of each design.
+    """Whether the error of an output exceeds `PEAK_TOLERANCE` or `MEAN_TOLERANCE`, by design.
 
     ``size(rough)`` returns the range of the values of those designs for a peak, their largest size for a mean.
     """
@@ -291,7 +291,7 @@ def parsed(text, parts=None) -> Output | SolutionNumber:
     Raises
     ------
     ParameterError
-        The text names no reduction and quantity; the message lists the reductions. The part has no such number.
+        The text is not a reduction and a quantity (the message lists the reductions), or the part lacks the number.
     """
     if isinstance(text, Output | SolutionNumber):
         return text

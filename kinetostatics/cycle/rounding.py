@@ -1,4 +1,4 @@
-"""Rounding of extremes: proven error bounds, and zeros for values that are rounding beside their bound or terms."""
+"""Rounding of extremes: proven error bounds, and zeros for values within rounding of their bound or terms."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ from ..numbers.formatting import number
 from ..numbers.lazy import cached_property
 
 FLOOR = 1e-13
-"""Size, relative to the largest term of a quantity, below which a value or a rise is rounding."""
+"""Size, relative to the largest term of a quantity, below which a value or a rise counts as rounding."""
 PLACED = 1e-7
-"""Crank angle, rad, below which the place of an extremum counts as 0: values around it agree to all digits."""
+"""Crank angle, rad, below which the angle of an extremum counts as 0: values around it agree to all digits."""
 AT_JUMP = 1e-6
 """Distance from a jump, rad, within which a bound may belong to the value on its other side."""
 MAX_LISTED = 24
-"""Extremes that are listed one by one; of more, as a measured load makes, only the smallest and the largest."""
+"""Largest number of extremes listed one by one; of more, as with a measured load, only the smallest and the largest."""
 BOUND_OFFSET = 1e-4
 """Distance from a jump, rad, at which bounds belong to one side."""
 
@@ -52,9 +52,9 @@ class BoundedExtremes:
         return np.where(np.isfinite(errors), errors, np.nan)
 
     def end(self, name, find):
-        """`End` at the index that `find` (`np.argmin`, `np.argmax`) returns for the values; the value of a constant.
+        """`End` at the index that `find` (`np.argmin`, `np.argmax`) returns for the values; or the constant.
 
-        Of values that are equal but for rounding it is the first.
+        Of values that are equal to rounding it is the first.
         """
         item = self.found[name]
         if not len(item):
@@ -65,9 +65,9 @@ class BoundedExtremes:
 
     @cached_property
     def _bounds(self):
-        """Bounds by name, computed together; empty where none can be given.
+        """Bounds by name, computed together; empty if none exist.
 
-        A value at a jump gets the larger bound of the values beside it.
+        At a jump the bound is the larger one of both sides.
         """
         found = {name: item for name, item in self.found.items() if len(item)}
         if not found:
@@ -92,9 +92,9 @@ class BoundedExtremes:
 
 
 def without_rounding(solution, name, values, bound=0.0):
-    """Values of a quantity, 0 where they are within `bound`, or rounding beside the largest term of the quantity.
+    """Values of a quantity, 0 where they are within `bound`, or rounding relative to the largest term of the quantity.
 
-    The parameters that balance a machine are rounded themselves, so a value that they make 0 may exceed its bound.
+    The parameters of a balanced machine are rounded, so a value that should be 0 may exceed its bound.
     """
     terms = np.append(np.abs(values), largest_term(solution, name))
     # a pressure is a root of a force
@@ -104,7 +104,7 @@ def without_rounding(solution, name, values, bound=0.0):
 
 
 def extremes_text(extremes):
-    """`Extremes` as text, with unit, and the digits that their error bounds leave."""
+    """`Extremes` as text, with unit, in the digits certain by their error bounds."""
     solution, name, unit, gaps = extremes.solution, extremes.quantity, "", ""
     values, errors = extremes.value, np.full(len(extremes), np.nan)
     if solution is not None:

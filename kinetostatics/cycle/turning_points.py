@@ -11,11 +11,11 @@ from .limit_positions import runs
 from .piecewise import JUMP_OFFSET, rolled, rule
 
 JUMP_TOLERANCE = 1e-9
-"""Difference of the values on both sides of an edge, relative to the largest value, that is no jump."""
+"""Largest difference of the values on both sides of an edge, relative to the largest value, without a jump."""
 LIMIT_TOLERANCE = 1e-4
-"""Difference of the limits from both sides of a limit position, relative to the size of the quantity, that is none."""
+"""Largest negligible difference of the limits on both sides of a limit position, relative to the quantity's size."""
 MIN_LEVEL_WIDTH = 0.05
-"""Crank angle, rad, over which values that differ by rounding alone are a level stretch, as in a dwell."""
+"""Crank angle, rad, over which values equal to rounding form a level stretch, as in a dwell."""
 NEAR_END = 0.97
 """Distance from the middle of a piece, relative to half its width, above which crank angles are polished."""
 HALVINGS = 48
@@ -23,9 +23,9 @@ HALVINGS = 48
 
 
 class Path(NamedTuple):
-    """Values of a quantity between which it rises or falls throughout, and their rounding.
+    """Successive values of a quantity, monotonic between them, and their rounding.
 
-    Periodic; with a period of 0 open, from one limit to the next.
+    Periodic; open from one limit to the next if the period is 0.
     """
 
     angle: np.ndarray
@@ -42,7 +42,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
     turn : Turn
     pieces : Pieces
     values : array (1 or 2, pieces, points + 2)
-        Of the quantity, its square or its components, at `Pieces.checked`; NaN without correct digits.
+        Values of the quantity, its square or its components, at `Pieces.checked`; NaN without correct digits.
     rough : array (pieces,) of bool
         Pieces that are not resolved.
     function : function
@@ -50,7 +50,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
     floor : array (pieces,)
         Rounding of the quantity on each piece.
     size : float
-        Of the quantity.
+        Size of the quantity.
     cuts : array
         Limit positions at which it has no value.
     scale : float
@@ -83,7 +83,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
         after = stop + (pieces.edges[later[0]] - stop) % turn.period
         left = limits[(limits >= before - ANGLE_TOLERANCE) & (limits <= start + ANGLE_TOLERANCE)][-1:]
         right = limits[(limits <= after + ANGLE_TOLERANCE) & (limits >= stop - ANGLE_TOLERANCE)][:1]
-        if left.size and np.array_equal(left, right):  # nothing but rounding beside a limit position
+        if left.size and np.array_equal(left, right):  # only rounding beside a limit position
             continue
         own = np.isin(owner, run)
         here = start + np.mod(angle[own] - start, turn.period)
@@ -102,7 +102,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
 
 
 def _polished(turn, function, angle, floor):
-    """Zeros of the slope of series around these crank angles; near the end of a piece its own slope has few digits."""
+    """Zeros of the slope of series around these crank angles; near the end of a piece its slope has few digits."""
     own, half = rule(9), 0.02
     values = turn.evaluate(function, (angle[:, None] + half * own.points).ravel()).reshape(angle.size, -1)
     series = own.series @ values.T
@@ -114,7 +114,7 @@ def _polished(turn, function, angle, floor):
 
 
 def _rough_candidates(turn, pieces, values, rough, function):
-    """The same on unresolved pieces, by minimisation around points that are higher or lower than those beside them."""
+    """Candidates on unresolved pieces, by minimisation around points higher or lower than their neighbours."""
     angle, value = pieces.checked.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
     rises, falls = ((value > rolled(value, k)).astype(int) - (value < rolled(value, k)) for k in (1, -1))
     side = rises + falls  # of two equal points each has one
@@ -150,7 +150,7 @@ def _candidates(pieces, values, resolved, known, level):
 def turning_points(path):
     """Indices of the extrema of a path, and whether each is a maximum, both (K,).
 
-    The ends of an open path are extrema too. Rises and falls within the rounding are taken out, the least first.
+    The ends of an open path are extrema too. Rises and falls within the rounding are removed, the smallest first.
     """
     _, value, floor, period = path
     count = value.size
@@ -173,7 +173,7 @@ def turning_points(path):
         if change[least] > 1:
             break
         pair = [least, (least + 1) % maximum.size]
-        if not period and (least == 0 or least == maximum.size - 2):  # the end stays, as the other kind
+        if not period and (least == 0 or least == maximum.size - 2):  # the end stays, as an extremum of the other kind
             end = pair.pop(-1 if least else 0)
             maximum[end] = ~maximum[end]
         kept = np.delete(np.arange(maximum.size), pair)

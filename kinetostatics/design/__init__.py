@@ -5,7 +5,7 @@ May import errors, numbers to drive.
 
 
 def __getattr__(name):
-    """A public name, loaded when first used; `__init__.pyi` lists them."""
+    """A public name, loaded on first use; `__init__.pyi` lists them."""
     from ..numbers.lazy import public_name
 
     return public_name(__name__, name)

@@ -1,4 +1,4 @@
-"""Static balancing by counterweights on links: full, partial, optimal, and what each costs.
+"""Static balancing by counterweights on links: full, partial, optimal, with their effects.
 
 A counterweight of mass m at the arm L adds its unbalance m L to the static moment m h of its link (`principal_points`).
 Full balancing makes all static moments vanish; partial balancing, with one counterweight on the crank, sets the ratio
@@ -6,7 +6,7 @@ Full balancing makes all static moments vanish; partial balancing, with one coun
     (h1 / L_OA) / (h2 / L_AB)      1: no shaking force across the guide     0: nearly none along it
                                    1/2: least overall, by the mower study (Kotov 2024)
 
-Two counterweights on the crank, in planes z1 and z2, take rotating force and couple away: with the rotating unbalances
+Two counterweights on the crank, in planes z1 and z2, cancel the rotating force and couple. With the rotating unbalances
 u_i in the planes z_i, w1 + w2 = -sum of u_i and z1 w1 + z2 w2 = -sum of z_i u_i (`in_two_planes`).
 """
 
@@ -45,7 +45,7 @@ NAMED_RATIOS = {"across": 1.0, "along": 0.0, "overall": 0.5}
 
 
 def full(mechanism, *, crank, coupler=None, rocker=None):
-    """Fully balanced mechanism: its common mass centre stands still.
+    """Fully balanced mechanism: its common mass centre does not move.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     Raises
     ------
     ParameterError
-        A counterweight is missing or not needed, breaks its limits, or the mechanism cannot be balanced so.
+        A counterweight is missing or not needed, breaks its limits, or the mechanism cannot be fully balanced.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     outer, link = ("coupler", chains[0].coupler.link) if bars is None else ("rocker", bars.rocker.link)
     if set(given) != {outer}:
         raise ParameterError(
-            f"full balancing of a {mechanism.name} takes a counterweight on crank and {outer}, got crank"
+            f"full balancing of a {mechanism.name} needs a counterweight on crank and {outer}, got crank"
             f"{''.join(f' and {name}' for name in given) or ' only'}"
         )
     first = _set_static_moment(mechanism, link, (0.0, 0.0), given[outer])
@@ -106,8 +106,8 @@ def partial(mechanism, ratio="overall", *, crank):
     Raises
     ------
     ParameterError
-        The mechanism is no crank-slider or has no mass, the ratio is unknown or not from 0 to 1, the condition cannot
-        be reached by a counterweight on the crank, or the counterweight breaks its limits.
+        The mechanism is not a crank-slider or has no mass, the ratio is unknown or not from 0 to 1, the condition
+        cannot be reached by a counterweight on the crank, or the counterweight breaks its limits.
 
     Examples
     --------
@@ -132,8 +132,8 @@ def partial(mechanism, ratio="overall", *, crank):
     if value == 1 and abs(across) > 1e-12 * abs(along):
         raise ParameterError(
             f"partial balancing: the {second.link}'s mass centre lies {mechanism.links[second.link].centre[1]:g} m off "
-            f"the line {second.start}-{second.end}, so no counterweight on the crank takes the force across the guide "
-            f"away; balance the {second.link} too"
+            f"the line {second.start}-{second.end}, so no counterweight on the crank cancels the force across the "
+            f"guide; balance the {second.link} too"
         )
     return _set_static_moment(mechanism, first.link, (value * first.length * along / second.length, 0.0), crank)
 
@@ -145,17 +145,17 @@ WEIGHT_RULES = {
 }
 NORMS = ("largest", "mean", "along", "across", "weighted", "largest moment", "largest weighted")
 MEAN_NORMS = ("mean", "weighted")
-"""Norms that are no largest value over the turn."""
+"""Norms other than a largest value over the turn."""
 MAX_REFINEMENTS = 8
-"""Times that true peaks join the crank angles of a search."""
+"""Number of times that exact peaks are added to the crank angles of a search."""
 PEAK_TOLERANCE = 1e-10
-"""Excess of a true peak over the largest value at the crank angles, relative to the reference."""
+"""Excess of an exact peak over the largest value at the crank angles, relative to the reference."""
 LEVEL_TOLERANCE = 1e-6
 """Excess over the least moment at the end of a front, relative to the moment without counterweights."""
 ZERO_NORM = 1e-11
-"""Norm relative to the reference that is 0 but for rounding."""
+"""Norm, relative to the reference, that is zero to rounding."""
 FLAT_TOLERANCE = 1e-12
-"""Relative change of a norm by a counterweight that is rounding."""
+"""Negligible relative change of a norm by a counterweight."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,8 +163,8 @@ class _ShakingSearch:
     """Norm of shaking force and moment over unbalances in units of `scale`, the largest static moment of a link.
 
     `weights` are of force and moment, 1/N and 1/(N m); `about` is the point of the moment, m; `size` is 2 if an
-    unbalance may leave its link's line, else 1; `turn` holds the crank angles of the norm, rad; `reference` is the norm
-    without counterweights, or 1. The largest moment may not exceed `moment_limit` at crank speed 1 rad/s, N m.
+    unbalance may be off its link's line, else 1; `turn` holds the crank angles of the norm, rad; `reference` is the
+    norm without counterweights, or 1. The largest moment may not exceed `moment_limit` at crank speed 1 rad/s, N m.
     """
 
     mechanism: Any
@@ -184,7 +184,7 @@ class _ShakingSearch:
         return np.zeros(self.size * len(self.counterweights))
 
     def balanced(self, unknowns):
-        """The mechanism with counterweights of these unbalances, each on either side and cut to its limits."""
+        """The mechanism with counterweights of these unbalances, on either side and within their limits."""
         result, unbalances = Balanced(self.mechanism, self.mechanism), (unknowns * self.scale).reshape(-1, self.size)
         for (name, weight), part in zip(self.counterweights.items(), unbalances, strict=True):
             unbalance = np.append(part, 0.0)[:2]
@@ -197,7 +197,7 @@ class _ShakingSearch:
         return result
 
     def solved(self, unknowns):
-        """Solution of that mechanism at crank speed 1 rad/s."""
+        """Solution of the balanced mechanism at crank speed 1 rad/s."""
         return Solution(self.balanced(unknowns).mechanism, self.turn, 1.0, 0.0)
 
     def moments(self, solution):
@@ -206,7 +206,7 @@ class _ShakingSearch:
         return np.abs(solution.shaking_moment - (x * along_y - y * along_x))
 
     def values(self, solution):
-        """Size of what the norm is of at each crank angle."""
+        """Quantity of the norm at each crank angle, without sign."""
         if self.norm == "largest moment":
             return self.moments(solution)
         if self.norm in ("along", "across"):
@@ -217,7 +217,7 @@ class _ShakingSearch:
         return np.hypot(self.weights[0] * force, self.weights[1] * self.moments(solution))
 
     def sizes(self, unknowns):
-        """Sizes under the norm at each crank angle, relative to the reference."""
+        """Quantity of the norm at each crank angle, relative to the reference."""
         return self.values(self.solved(unknowns)) / self.reference
 
     def margins(self, unknowns):
@@ -233,14 +233,14 @@ class _ShakingSearch:
 
     def best(self):
         """Unknowns of the least norm over the turn."""
-        # one start on each side where weights keep out of a hole
+        # one start on each side if weights must stay outside a radius
         kept_out = any(weight.keep_out for weight in self.counterweights.values())
         starts = (self.none - 0.5, self.none + 0.5) if kept_out else (self.none,)
         best = min((_minimise_norm(self.objective, start) for start in starts), key=self.objective)
         return best if self.norm in MEAN_NORMS or self.objective(best) < ZERO_NORM else self.refined(best)
 
     def refined(self, best):
-        """Unknowns of the least true peak from a start: peaks between the crank angles join them."""
+        """Unknowns of the least exact peak from a start; peaks between the crank angles are added to them."""
         search, limited = self, self.moment_limit < np.inf
         for _ in range(MAX_REFINEMENTS):
             found = _minimise_peak(search, best)
@@ -297,7 +297,7 @@ def _search(mechanism, norm, phase, weights, about, angles, counterweights):
         problems += [checks.choice("link", name, tuple(mechanism.links)), _weight_problem(name, weight)]
         if getattr(weight, "whole_link", False):
             problems.append(
-                f"{name}: optimal balancing adds counterweights to links; with the ratio or unbalance found, use "
+                f"{name}: optimal balancing adds counterweights to links; to set a ratio or unbalance, use "
                 "partial or counterweight for a whole link"
             )
     paired = isinstance(weights, list | tuple | np.ndarray) and getattr(weights, "ndim", 1) == 1 and len(weights) == 2
@@ -338,20 +338,20 @@ def optimal(
     ----------
     mechanism : Mechanism
     norm : "largest", "mean", "along", "across", "weighted", "largest moment" or "largest weighted"
-        Largest or mean magnitude of the shaking force, its largest component along or across the guide; largest
-        magnitude of the shaking moment; root mean square or largest value of the weighted force and moment together,
-        at each crank angle the root of the sum of their squares.
+        Largest or mean magnitude of the shaking force; its largest component along or across the guide; largest
+        magnitude of the shaking moment; or the root mean square or largest value of the weighted force and moment, as
+        the root of the sum of their squares at each crank angle.
     phase : bool
-        Whether a counterweight may lie beside its link's line.
+        Whether a counterweight may be off its link's line.
     weights : (force, moment)
-        Of "weighted" and "largest weighted": 1/N and 1/(N m). (0, 1) makes the root mean square of the moment least.
+        For "weighted" and "largest weighted", in 1/N and 1/(N m). (0, 1) minimises the root mean square of the moment.
     about : (x, y)
-        Point of the shaking moment, m; O by default, about which a counterweight on the crank alone does not change it.
+        Point of the shaking moment, m; by default O. A counterweight on the crank does not change the moment about O.
     angles : int
-        Crank angles at which the norm is taken; for a largest value, true extremes join them.
+        Number of crank angles of the norm; for a largest value, exact extremes are added to them.
     **counterweights : Counterweight
-        By link, as ``crank=Counterweight(arm=0.03)``; the search finds the side, whatever the sign of the arm, and
-        keeps the limits.
+        By link, as ``crank=Counterweight(arm=0.03)``. The search finds the side, for either sign of the arm, and keeps
+        the limits.
 
     Returns
     -------
@@ -360,7 +360,7 @@ def optimal(
     Raises
     ------
     ParameterError
-        An unknown norm, a link that does not exist, no counterweight at all, limits that cannot be kept, forces along
+        The norm or a link is unknown, there is no counterweight, limits cannot be kept, forces are wanted along
         and across guides that are not parallel, or a moment that no counterweight changes.
     AssemblyError
         The mechanism does not close all round the turn, with the crank angles.
@@ -380,16 +380,16 @@ def optimal(
 
 
 def pareto(mechanism, *, points=9, crank_speed=1.0, phase=False, about=(0.0, 0.0), angles=360, **counterweights):
-    """Counterweights with the least largest shaking force for each largest shaking moment.
+    """Counterweights with the smallest shaking force for each limit of the shaking moment (largest values).
 
     Parameters
     ----------
     mechanism, phase, about, angles, counterweights
         As for `optimal`.
     points : int
-        Designs on the front, at least 2: evenly by the moment, from the least force to the least moment.
+        Number of designs on the front, at least 2, evenly spaced in the moment, from least force to least moment.
     crank_speed : float
-        Of the force and moment in the table, rad/s; the counterweights are the same at any speed.
+        Crank speed for force and moment in the table, rad/s; the counterweights do not depend on it.
 
     Returns
     -------
@@ -446,28 +446,28 @@ def _weight_problem(name, weight):
 def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     """Mechanism with two counterweights on the crank that balance its rotating masses: their force and their couple.
 
-    Rotating masses are the crank's own; of each coupler on a crank pin the part (1 - s/l) of its mass m, with its
-    centre s from the pin on the length l; each block on a crank pin. Of the reciprocating masses, sliders and the rest
-    of their couplers, a share may be balanced too, at the cost of as much force across the guide.
+    Rotating masses are the crank's own; the part (1 - s/l) of the mass m of each coupler on a crank pin, with its
+    centre at s from the pin on the length l; and each block on a crank pin. A share of the reciprocating masses
+    (sliders and the rest of their couplers) may be balanced too, at the cost of an equal force across the guide.
 
     Parameters
     ----------
     mechanism : Mechanism
         With planes of its groups.
     left, right : Counterweight
-        Each with its `plane`, and its mass or arm; here an arm is a distance, without sign.
+        Each has a `plane`, and a mass or an arm; here an arm is a distance without sign.
     reciprocating : float
         Share of the reciprocating masses, 0 to 1; 1/2 leaves the least first harmonic of one cylinder.
 
     Returns
     -------
     Balanced
-        Left and right one stand in `in_planes`, the two together in `counterweights`.
+        `in_planes` lists both counterweights, `counterweights` their sum.
 
     Raises
     ------
     ParameterError
-        A counterweight has no plane, both have the same, or its limits are broken; the share is not from 0 to 1; the
+        A counterweight has no plane, both have the same plane, or limits are broken; the share is not from 0 to 1; the
         mechanism has no mass, is a batch, or moves its pin at a varying distance from O.
 
     Examples
@@ -489,7 +489,7 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
         None if 0.0 <= share <= 1.0 else f"reciprocating must lie between 0 and 1, got {share:g}",
         *(f"{name} needs a plane: Counterweight(..., plane=0.3)" for name, item in given.items() if item.plane is None),
         f"left and right have the same plane, {left.plane:g} m" if left.plane == right.plane is not None else None,
-        "the pin of a cam roller runs at a varying distance from O" if mechanism.led_by_ground else None,
+        "the pin of a cam roller moves at a varying distance from O" if mechanism.led_by_ground else None,
     )
     (crank,) = mechanism.crank.links
     pins = {name: complex(*point[1:]) for name, point in mechanism.joints.items() if point.link == crank}
@@ -522,7 +522,7 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
 def _set_static_moment(mechanism, link, moment, weight):
     """`Balanced` with the counterweight that gives a link this static moment.
 
-    In a four-bar the coupler's vector is a sum of those of rocker, crank and frame, so its static moment passes to
+    In a four-bar the coupler's vector is a sum of rocker, crank and frame vectors, so its static moment passes to
     crank and rocker in proportion to their lengths (Berkof and Lowen 1969).
     """
     checks.require("balancing", _weight_problem(link, weight))
@@ -543,8 +543,8 @@ def ratio_problem(ratio):
     if 0.0 <= ratio <= 1.0:
         return None
     return (
-        f"ratio must be from 0 (nearly no force along the guide) to 1 (none across it), got {ratio:g}: beyond an end "
-        "the force is larger along the guide and across it than at that end"
+        f"ratio must be from 0 (nearly no force along the guide) to 1 (none across it), got {ratio:g}: beyond them "
+        "the force is larger both along and across the guide"
     )
 
 
@@ -560,7 +560,7 @@ def _require_balanceable(mechanism):
         carried = principal_points(mechanism).carried
         pin = next(iter(mechanism.curves), "A")
         raise ParameterError(
-            f"the pin {pin} of a {mechanism.name} runs at a varying distance from O with {carried.get(pin, 0.0):g} kg "
+            f"the pin {pin} of a {mechanism.name} moves at a varying distance from O with {carried.get(pin, 0.0):g} kg "
             "on it, so no counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
         )
 
@@ -570,7 +570,7 @@ def _require_masses(mechanism):
     if mechanism.batch:
         raise ParameterError(f"balancing works on one design at a time, got a batch of shape {mechanism.batch}")
     if not np.any(principal_points(mechanism).mass):
-        raise ParameterError(f"the {mechanism.name} has no mass: there is nothing to balance")
+        raise ParameterError(f"the {mechanism.name} has no mass to balance")
 
 
 def __dir__():

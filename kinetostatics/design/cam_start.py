@@ -19,7 +19,7 @@ from ..solution.scene import Scene
 
 OWNER = "torque-free cam"
 MAX_HARMONICS = 64
-"""Most harmonics of a search within a minute; with eight the rest is below workshop accuracy."""
+"""Largest number of harmonics of a search within a minute; with eight the remainder is below workshop accuracy."""
 END_RULES = {"ends": checks.Optional(checks.Pair("m", parts=("low", "high")))}
 OPTION_RULES: dict[str, tuple[str, dict]] = {
     "guide_offset": ("m", {}),
@@ -33,9 +33,9 @@ LENGTH_REACH = 0.5
 MAX_STIFFNESS_RATIO = 3.0
 """Largest stiffness relative to the spring that balances the slider."""
 HARMONIC_REACH = 0.1
-"""Largest harmonics of random starts beside a circle about O, relative to half the stroke."""
+"""Largest harmonics of random starts added to a circle about O, relative to half the stroke."""
 WEIGHT_REACH = 0.1
-"""Largest shift of the counterweight from where it balances the coupler's weight, relative to its arm."""
+"""Largest shift of the counterweight from the balance of the coupler's weight, relative to its arm."""
 SPRING_PATH, OFFSET_PATH = "torsion_spring.stiffness", "guide_offset"
 WEIGHT_PATHS = ("crank.centre.along", "crank.centre.across")
 
@@ -135,7 +135,7 @@ def _harmonics_problem(name, value):
 
 
 def starting_machine(given, options) -> Start:
-    """The start of a search, with the links and loads of a scene; refused for other machines and impossible strokes."""
+    """Start of a search, with the links and loads of a scene; an error for other machines or impossible strokes."""
     group, links = crank_slider_links(given)
     low, high = _ends(given, options.ends)
     half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)
@@ -193,12 +193,12 @@ def starting_machine(given, options) -> Start:
 
 
 def crank_slider_links(given):
-    """Slider group of a crank-slider scene, and its links by name; other scenes are refused."""
+    """Slider group of a crank-slider scene, and its links by name; an error for other scenes."""
     mechanism = given.mechanism
     roller, slider = crank_slider_parts(mechanism) or (None, None)
     if slider is None or slider.assembly != 1:
         raise ParameterError(
-            "torque-free cam: takes a crank-slider, plain or with a cam, whose slider is ahead of A (assembly +1), "
+            "torque-free cam: needs a crank-slider, plain or with a cam, whose slider is ahead of A (assembly +1), "
             f"got {mechanism.name}"
         )
     links = {"crank": mechanism.crank.link, "coupler": slider.coupler, "slider": slider.slider}
@@ -210,7 +210,7 @@ def _ends(given, ends):
     low, high = extrema(given.solve(12), "slider_position").range if ends is None else map(float, ends)
     if not (0 < low < high):
         raise DesignError(
-            f"torque-free cam: the slider must stay ahead of O between two ends, but is to run from {low:.6g} m to "
+            f"torque-free cam: the slider must stay ahead of O between two ends, but would move from {low:.6g} m to "
             f"{high:.6g} m; lengthen the coupler or shorten the stroke"
         )
     return low, high
@@ -226,7 +226,7 @@ def _mean_torque(crank_length, coupler_length, coupler, slider, speed):
     plain = crank_slider(crank_length, coupler_length, coupler=coupler, slider=slider)
     found = float(np.mean(np.abs(Scene(plain, speed).solve(360).balancing_torque)))
     if not found:
-        raise DesignError("torque-free cam: without masses or at rest the machine needs no torque to begin with")
+        raise DesignError("torque-free cam: without masses or at rest the machine already needs no torque")
     return found
 
 

@@ -1,7 +1,7 @@
 """Scenes written as case files for `kinetostatics run` and `ks.load_case`.
 
-Keys and units follow the rules of the parts; numbers keep all digits. Tables of loads and cams go to CSV files beside
-the case file, named by it, the variant and their part.
+Keys and units follow the rules of the parts; numbers keep all digits. Tables of loads and cams go to CSV files next to
+the case file, named after it, the variant and the part.
 """
 
 import json
@@ -28,10 +28,10 @@ CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "ha
 
 
 def write_case(path, title, scenes, source="", *, comment="", designs=None, references=None, sizing=None) -> Path:
-    """Write a case file of scenes by the names of their variants, the first as reference unless `references` differ.
+    """Write a case file of scenes by the names of their variants; `references` is by default the first one.
 
-    A comment precedes them; tables of designs and parts from another case file follow. Raises `ParameterError` for what
-    has no text in case files, `FileError` where a file cannot be written or that of a table exists already.
+    A comment precedes them; tables of designs and parts from another case file follow. Raises `ParameterError` for
+    objects without a text in case files, `FileError` if a file cannot be written or a table's file exists already.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
@@ -56,7 +56,7 @@ def tables(path, scenes) -> dict[Path, str]:
     beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
     there = [str(file) for file in beside if file.exists()]
     if there:
-        raise FileError(f"{', '.join(there)}: there already; a case file of another name has tables of other names")
+        raise FileError(f"{', '.join(there)}: exists already; choose another name of the case file")
     return beside
 
 
@@ -68,7 +68,7 @@ def table(head, raw) -> str:
 
 
 def variant(name, scene, stem="case", reference=None) -> str:
-    """Text of a variant, a scene under a name, with its own reference; names of its table files begin with `stem`."""
+    """Text of a variant: a scene with a name and its own reference; names of its table files begin with `stem`."""
     head = f"variants.{_key(name)}"
     keys, tables = _mechanism_keys(scene.mechanism, _table_file(stem, name, "cam"))
     if reference is not None:
@@ -82,7 +82,7 @@ def variant(name, scene, stem="case", reference=None) -> str:
     gravity = [item for item in scene.loads if isinstance(item, Gravity)]
     others = [item for item in scene.loads if not isinstance(item, Gravity)]
     if len(gravity) > 1:
-        raise ParameterError("case file: takes one Gravity, the scene has several")
+        raise ParameterError("case file: only one Gravity can be written, the scene has several")
     for item in gravity:
         tables.append(("gravity", _keys(item)))
     for joint, friction in scene.friction.items():
@@ -263,7 +263,7 @@ def _number(value, unit, name):
 def _single_number(value, name):
     if isinstance(value, float | int) or (isinstance(value, np.ndarray) and value.size == 1):
         return float(value)
-    raise ParameterError(f"case file: {name} must be one number to be written, got {checks.shown(value)}")
+    raise ParameterError(f"case file: {name} must be one number in a case file, got {checks.shown(value)}")
 
 
 def _unit_text(unit):

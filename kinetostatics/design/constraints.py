@@ -17,7 +17,7 @@ _RELATIONS = {"≤": "<=", "≥": ">=", "==": "="}
 
 
 def _is_plain(unit):
-    """Whether outputs in a unit are compared with plain numbers: it is 1, or one that no text can be given in."""
+    """Whether outputs in a unit are compared with plain numbers: it is 1, or a unit without texts."""
     try:
         return unit == "1" or not base_factor(unit)
     except ValueError:
@@ -84,7 +84,7 @@ def parse_constraint(text, known, parts=None) -> Constraint:
 
 
 def parse_output(text, known, parts=None) -> Output | SolutionNumber:
-    """Output of a design, with its unit; refused if it is unknown, or the angle of an extreme, which jumps."""
+    """Output of a design, with its unit; an error if it is unknown, or the angle of an extreme, which jumps."""
     output = parsed(text, parts).of(known)
     if isinstance(output, SolutionNumber):
         return output
@@ -94,7 +94,7 @@ def parse_output(text, known, parts=None) -> Output | SolutionNumber:
 
 
 def limit_list(texts):
-    """Limits as a tuple; one may be given alone."""
+    """Limits as a tuple; a single one may be given."""
     if not isinstance(texts, str | Iterable):
         raise ParameterError(
             f'design: limits must be texts, such as ["largest O <= 0.75 kN"], got {checks.shown(texts)}'
@@ -115,7 +115,7 @@ def parse_constraints(texts, known, parts=None):
 
 
 def table_limits(scene):
-    """Limits that keep each slider within the load tables over its travel."""
+    """Limits that keep each slider within its load tables over travel."""
     found = {}
     for table in map(value_of, scene.loads):
         if isinstance(table, Table) and table.over == "travel":

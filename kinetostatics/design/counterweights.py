@@ -14,13 +14,14 @@ from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..solution.scene import solve
 from .linkage import crank_sliders
 
 PARALLEL_TOLERANCE = 1e-9
 """Sine of the angle between guides up to which they are parallel."""
 CHANGE_TOLERANCE = 1e-10
-"""Change, per cent, that counts as 0."""
+"""Negligible change, per cent."""
 
 MASS, LENGTH = (checks.Optional(checks.Number(unit, low=0.0, strict=True)) for unit in ("kg", "m"))
 COUNTERWEIGHT_RULES = {
@@ -36,7 +37,7 @@ UNBALANCE_RULE = {"unbalance": checks.Pair("kg*m", parts=("along", "across"), lo
 
 @dataclass(frozen=True)
 class Counterweight:
-    """A counterweight of given mass or arm, with limits; its unbalance follows later.
+    """A counterweight of given mass or arm, with limits; the balancing function sets its unbalance.
 
     Parameters
     ----------
@@ -46,18 +47,18 @@ class Counterweight:
         Distance of its mass centre from the link's reference joint, m; negative on the extension behind the joint. The
         mass follows.
     whole_link : bool
-        Mass and arm are those of the link together with its counterweight, as for a new link.
+        Whether mass and arm are those of the link including its counterweight, as for a new link.
     largest_mass, largest_arm : float, optional
         Limits, kg and m.
     keep_out : float, optional
-        Radius around the reference joint that it must stay outside of, m.
+        Radius around the reference joint in which the counterweight must not lie, m.
     plane : float, optional
         Position along the crankshaft of a counterweight on the crank, m; by default that of the link's mass centre.
 
     Raises
     ------
     ParameterError
-        Both mass and arm are given, or neither, or a value is not possible.
+        Both mass and arm are given, or neither, or a value is impossible.
 
     Examples
     --------
@@ -100,7 +101,7 @@ class Counterweight:
         if self.arm * unbalance[0] < 0:
             raise ParameterError(
                 f"counterweight: at the arm {self.arm:g} m its mass would have to be {unbalance[0] / self.arm:.6g} kg; "
-                f"it belongs on the other side of the joint: arm {-self.arm:g} m"
+                f"place it on the other side of the joint: arm {-self.arm:g} m"
             )
         reach = abs(self.arm) / size
         return 1.0 / reach, (reach * unbalance[0], reach * unbalance[1])
@@ -112,7 +113,7 @@ class Counterweight:
         return (self.mass or 0.0) * (self.keep_out or 0.0), largest
 
     def problems(self, link, mass, arm):
-        """Sentences about limits that a counterweight breaks beyond rounding."""
+        """Sentences about exceeded limits of a counterweight, beyond rounding."""
         if mass == 0:
             return
         for limit, found, unit, sign, words in [
@@ -121,7 +122,7 @@ class Counterweight:
             (self.keep_out, arm, "m", -1, "lies inside the keep-out radius"),
         ]:
             if limit is not None and sign * (found - limit) > 1e-12 * limit:
-                yield f"{link}: the counterweight needed, {found:.6g} {unit}, {words} {limit:g} {unit}"
+                yield f"{link}: the counterweight needs {found:.6g} {unit}, {words} {limit:g} {unit}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +136,7 @@ class Balanced:
     counterweights : dict of link to (mass, (along, across))
         kg and m.
     in_planes : tuple of (plane, mass, (along, across))
-        Those of `in_two_planes`, with their positions along the crankshaft, m.
+        Counterweights of `in_two_planes`, with their positions along the crankshaft, m.
 
     Examples
     --------
@@ -150,14 +151,16 @@ class Balanced:
     {'crank': -0.05}
     """
 
-    bare: Mechanism
-    mechanism: Mechanism
+    bare: Mechanism = field(repr=False)
+    mechanism: Mechanism = field(repr=False)
     counterweights: dict = field(default_factory=dict)
     in_planes: tuple = ()
 
+    __repr__ = repr_with_units(counterweights="kg, m", in_planes="m, kg, m")
+
     @property
     def ratio(self):
-        """Ratio (h1 / L_OA) / (h2 / L_AB) reached; NaN if undefined, as after full balancing."""
+        """Resulting ratio (h1 / L_OA) / (h2 / L_AB); NaN if undefined, as after full balancing."""
         chains = crank_sliders(self.mechanism)
         if not chains:
             return np.nan
@@ -239,7 +242,7 @@ def counterweight(mechanism, link, unbalance, weight):
     mechanism : Mechanism
     link : str
     unbalance : float or (along, across)
-        Unbalance of the counterweight, mass times arm, kg m; of the link with it if ``weight.whole_link``.
+        Unbalance of the counterweight, mass times arm, kg m; with ``weight.whole_link`` that of the whole link.
     weight : Counterweight
         Its mass or arm, and its limits.
 
@@ -250,7 +253,7 @@ def counterweight(mechanism, link, unbalance, weight):
     Raises
     ------
     ParameterError
-        No such link, or the counterweight needed breaks its limits; with the numbers.
+        The link is unknown, or the counterweight exceeds its limits; the message gives the numbers.
 
     Examples
     --------
@@ -275,8 +278,8 @@ def counterweight(mechanism, link, unbalance, weight):
         mass, added = whole - bare.mass, wanted - own
         if mass <= 0 and np.any(added != 0):
             raise ParameterError(
-                f"counterweight: the {link} with its counterweight would weigh {whole:.6g} kg, less than the "
-                f"{bare.mass:g} kg it has; choose a shorter arm or a larger mass"
+                f"counterweight: the {link} with its counterweight would have {whole:.6g} kg, less than the "
+                f"{bare.mass:g} kg of the bare link; choose a shorter arm or a larger mass"
             )
         place = tuple(added / mass) if mass > 0 else (0.0, 0.0)
     else:
@@ -314,7 +317,7 @@ def guide_direction(mechanism, slider=None):
     x, y = directions[0]
     if any(abs(x * v - y * u) > PARALLEL_TOLERANCE for u, v in directions):
         raise ParameterError(
-            f"along and across the guide mean nothing for a {mechanism.name} with guides of {' and '.join(guides)} "
+            f"along and across the guide are undefined for a {mechanism.name} with guides of {' and '.join(guides)} "
             'that are not parallel; use "largest" or "mean"'
         )
     return directions[0]
@@ -323,9 +326,9 @@ def guide_direction(mechanism, slider=None):
 def balancing_table(reference, variants, sampling=None):
     """Counterweights and shaking forces of variants, a pandas DataFrame with a column for each balanced link.
 
-    In mm, kg and N; forces stand in the first column of each variant. `reference` is the solution of the unbalanced
-    mechanism, `variants` are (Balanced, Solution) by name; `sampling`, the crank-angle step of a published study, rad,
-    adds the extremes on its grid.
+    Units are mm, kg and N; forces are in the first column of each variant. `reference` is the solution of the
+    unbalanced mechanism, `variants` are (Balanced, Solution) by name; `sampling`, the crank-angle step of a published
+    study, rad, adds the extremes on its grid.
     """
     import pandas as pd
 
@@ -365,6 +368,6 @@ def balancing_table(reference, variants, sampling=None):
 
 
 def _largest_by_size(values):
-    """Value of largest magnitude, with its sign; the first of values equal but for rounding."""
+    """Value of largest magnitude, with its sign; of values equal to rounding the first."""
     size = np.abs(values)
     return values[np.flatnonzero(size >= (1 - 1e-12) * size.max())[0]]

@@ -1,7 +1,7 @@
-"""Duties: one machine in several scenes, each for a share of the time, as a saw that idles and cuts.
+"""Duties: one machine in several scenes, each for a share of the time, such as a saw that idles and cuts.
 
-Outputs are computed in each duty, and the goal is their mean weighted by the shares. A limit holds in each duty, or in
-the one it names, "cut: largest O <= 40 kN"; "mean: ..." limits the weighted mean.
+Outputs are computed in each duty; the goal is their mean, weighted by the shares. A limit applies to every duty, or to
+one duty: "cut: largest O <= 40 kN"; "mean: ..." limits the weighted mean.
 """
 
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ SHARE_TOLERANCE = 1e-9
 
 
 class Duty(NamedTuple):
-    """What runs in a duty: a Scene or variant, the reference of its ratios, its share of the time."""
+    """A duty: a Scene or variant, the reference of its ratios, its share of the time."""
 
     source: Any
     reference: Any
@@ -35,7 +35,7 @@ def read_duties(source, variant, reference) -> dict[str, Duty]:
         item, compared = choose_design(source, variant, reference)
         return {"": Duty(item, compared, 1.0)}
     problems = [None if variant is None else "variant is for cases; each duty has its scene"]
-    problems += [None if source else "there are no duties"]
+    problems += [None if source else "give at least one duty"]
     found: dict[str, Duty] = {}
     references = reference if isinstance(reference, Mapping) else dict.fromkeys(source, reference)
     problems += [checks.choice("duty of reference", name, tuple(source)) for name in references]
@@ -87,7 +87,7 @@ def _parts_of(source):
 
 
 def in_each(duties, function) -> dict:
-    """Results by name of a function, called with name and duty of each; one error lists the faults of all."""
+    """Results by name of a function, called with the name and duty; one error lists all faults."""
     if "" in duties:
         return {"": function("", duties[""])}
     found: dict = {}
@@ -102,7 +102,7 @@ def in_each(duties, function) -> dict:
 
 
 def limits_of(limits, names) -> dict[str, list]:
-    """Limits by duty, and of the mean; a limit that names no duty holds in each."""
+    """Limits by duty, and of the mean; a limit without duty applies to each."""
     found: dict[str, list] = {name: [] for name in (*names, MEAN)}
     problems = []
     for limit in limit_list(limits):
@@ -121,7 +121,7 @@ def limits_of(limits, names) -> dict[str, list]:
 class DutyProblem:
     """Problems of one machine in its duties, by name; outputs are means weighted by the shares of time.
 
-    `quantities` are those of each duty by name.
+    `quantities` are the quantities of each duty by name.
     """
 
     def __init__(self, duties, vary, quantities, angles, engine):
@@ -140,7 +140,7 @@ class DutyProblem:
             for path, row in zip(self.names, starts.T, strict=True)
             if np.ptp(row)
         ]
-        checks.require("design", f"one machine has one value of what varies, but {'; '.join(texts)}" if texts else None)
+        checks.require("design", f"all duties need the same varied numbers, but {'; '.join(texts)}" if texts else None)
 
     @property
     def evaluations(self):

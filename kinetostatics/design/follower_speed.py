@@ -13,12 +13,13 @@ from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
 from ..machine.loads import TURN, Spring, surge
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..solution.scene import Scene
 
 REST_SPEED_RATIO = 1e-6
-"""Share of the crank speed that stands for rest; it keeps the sign of forces that vanish at rest."""
+"""Crank speed used for rest, relative to the crank speed; it keeps the sign of forces that vanish at rest."""
 QUADRATIC_TOLERANCE = 1e-9
-"""Deviation of forces from growth with the squared speed, relative to the largest, that counts as 0."""
+"""Negligible deviation of forces from growth with the squared speed, relative to the largest force."""
 MAX_SPEED_RATIO = 1e3
 """Largest speed of the search for lift-off over the crank speed."""
 SPEED_TOLERANCE = 1e-12
@@ -35,9 +36,9 @@ class Surge(NamedTuple):
     natural_frequency : float
         rad/s.
     order : float
-        Times it swings in a turn of the crank at the solution's mean speed.
+        Oscillations per turn of the crank at the solution's mean speed.
     amplitudes : array
-        Of the spring's end by order, m; the first is its mean, orders count turns.
+        Amplitudes of the spring's end by order (harmonic of a turn), m; the first is the mean.
 
     Examples
     --------
@@ -53,6 +54,8 @@ class Surge(NamedTuple):
     natural_frequency: float
     order: float
     amplitudes: np.ndarray
+
+    __repr__ = repr_with_units(natural_frequency="rad/s", amplitudes="m")
 
     @property
     def excitation(self):
@@ -73,9 +76,9 @@ def lift_off_speed(solution, force="cam_force"):
     Parameters
     ----------
     solution : Solution
-        Of one design, of a mechanism with a `CamRoller` or a follower; its speed gives the sense of rotation.
+        One design of a mechanism with a `CamRoller` or a follower; its speed gives the sense of rotation.
     force : str
-        That of the contact: "contact_force" of a follower on a cam that turns, with its label.
+        Name of the contact force: "contact_force", with the label of its follower, for a cam that turns.
 
     Returns
     -------
@@ -117,7 +120,7 @@ def lift_off_speed(solution, force="cam_force"):
 
 
 def _lift_off_by_search(solution, force, fast, side, angle):
-    """Least speed at which the force vanishes at some crank angle, by search, rad/s."""
+    """Least speed, rad/s, at which the force vanishes at a crank angle, by search."""
     from scipy.optimize import brentq
 
     def least(speed, angle):
@@ -127,7 +130,7 @@ def _lift_off_by_search(solution, force, fast, side, angle):
     speeds = abs(fast) * np.geomspace(0.01, MAX_SPEED_RATIO, 61)
     above = next((speed for speed in speeds if least(speed, angle) < 0.0), None)
     speed = np.inf if above is None else float(brentq(least, rest, above, (angle,), rtol=SPEED_TOLERANCE))
-    while np.isfinite(speed):  # the force is least between those angles
+    while np.isfinite(speed):  # the force is smallest between those angles
         found = extrema(_solution_at(solution, np.copysign(speed, fast), 0.0), force)
         lowest = found.angle[[np.argmin(side * found.value)]]
         if least(speed, lowest) >= 0.0:
@@ -146,17 +149,17 @@ def lifted(solution, force="cam_force"):
     solution : Solution
         Of one design.
     force : str
-        Positive where it presses: "contact_force" of a follower, with its label.
+        Name of a force that is positive where it presses: "contact_force", with the label of the follower.
 
     Returns
     -------
     tuple of (float, float)
-        Start and stop of each interval, rad; a stop beyond the period lies in the next one.
+        Start and stop of each interval, rad; a stop beyond the period is in the next period.
 
     Raises
     ------
     ParameterError
-        There is no such force, or the solution is of a batch of designs.
+        The force is unknown, or the solution is a batch of designs.
 
     Examples
     --------
@@ -187,15 +190,15 @@ def force_changes(solution, force):
 
 
 def starting_torque(solution):
-    """Largest torque on the crank that turns the machine at rest through some crank angle, N m, and where.
+    """Largest torque that turns the crank from rest, without sign, N m, and its crank angle.
 
-    Springs and weights must be overcome, and friction; inertia is not. Without sign.
+    The torque overcomes springs, weights and friction, but not inertia.
 
     Parameters
     ----------
     solution : Solution
-        Of one design; its crank angles do not matter, its speed only for its sense of rotation, at rest that of its
-        `sense` or acceleration.
+        One design; its crank angles have no effect, and its speed gives only the sense of rotation, at rest that of
+        `sense` or the acceleration.
 
     Returns
     -------
@@ -222,16 +225,16 @@ def starting_torque(solution):
 def spring_surge(solution, spring_mass=None):
     """Natural frequency of the springs on a slider, and the harmonics with which the machine moves their ends.
 
-    With both ends held, omega = pi sqrt(k / m) (`machine.loads.surge` derives it); where it is a low multiple of the
-    crank speed whose harmonic is not small, coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13). The rate k of a
-    progressive spring is its mean over the period.
+    With both ends fixed, omega = pi sqrt(k / m) (derived in `machine.loads.surge`). If omega is a low multiple of the
+    crank speed and that harmonic is not small, the coils clash (Wahl, *Mechanical Springs*, 1963, chapter 13). The rate
+    k of a progressive spring is its mean over the period.
 
     Parameters
     ----------
     solution : Solution
         Of one design, with a `Spring` among its loads.
     spring_mass : float, optional
-        Of all springs together that the stiffness is of, kg; by default the `mass` of the `Spring`.
+        Mass of all springs together, kg; by default the `mass` of the `Spring`.
 
     Returns
     -------
@@ -240,7 +243,7 @@ def spring_surge(solution, spring_mass=None):
     Raises
     ------
     ParameterError
-        The solution has not one spring among its loads, or the mass is not known.
+        The loads do not contain exactly one spring, or its mass is unknown.
 
     Examples
     --------
@@ -259,7 +262,7 @@ def spring_surge(solution, spring_mass=None):
     given = springs[0].mass if spring_mass is None else spring_mass
     mass = checks.single_numbers("spring_surge", spring_mass=(given, "kg", POSITIVE))["spring_mass"]
     if len(springs) != 1:
-        raise ParameterError(f"spring_surge: takes a solution with one Spring among its loads, got {len(springs)}")
+        raise ParameterError(f"spring_surge: needs a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
     pieces = Pieces(edges_between(solution.sampled.pieces.edges, 2.0 * TURN / HARMONICS), SURGE_POINTS)
     angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
@@ -276,13 +279,13 @@ def spring_surge(solution, spring_mass=None):
 
 
 def _angles(solution):
-    """Crank angles over the period, rising from 0, among them both sides of every kink and narrow pulse."""
+    """Crank angles over the period, rising from 0, including both sides of every kink and narrow pulse."""
     even = np.linspace(0.0, solution.period, PEAK_SAMPLES, endpoint=False)
     return np.union1d(even, solution.sampled.angle)
 
 
 def peak_of(solution, function):
-    """Largest value of a function of a solution over the period, a `Peak`; of a constant at 0."""
+    """Largest value of a function of a solution over the period, a `Peak`; at angle 0 for a constant."""
     value, angle = largest_of(extrema(solution, function))
     return Peak(value, float(np.nan_to_num(angle)))
 
@@ -291,7 +294,7 @@ def _require(solution, owner, name):
     checks.require(owner, checks.solution("solution", solution))
     require_single(solution, owner, name)
     if name == "cam_force" and name not in solution.scalars:
-        raise ParameterError(f"{owner}: takes a mechanism with a CamRoller, a {solution.mechanism.name} has none")
+        raise ParameterError(f"{owner}: needs a mechanism with a CamRoller, but a {solution.mechanism.name} has none")
     checks.require(owner, checks.choice("force", name, tuple(solution.scalars)) if name else None)
 
 

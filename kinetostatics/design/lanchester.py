@@ -6,7 +6,7 @@ At constant crank speed omega the shaking force, as a complex number, is a Fouri
 
 Its harmonic n, c_n exp(i n phi) + c_-n exp(-i n phi), runs on an ellipse: the sum of a circle forward and one backward.
 A shaft of the ratio m gives U m^2 omega^2 exp(i (m phi + p)) and cancels the term m if U exp(i p) = -c_m / m^2. So two
-shafts cancel a harmonic exactly, whatever the mechanism; the one of the ratio 1 may be a counterweight on the crank.
+shafts cancel a harmonic exactly for any mechanism; the shaft of ratio 1 may be a counterweight on the crank.
 """
 
 from dataclasses import dataclass, replace
@@ -27,13 +27,13 @@ from .counterweights import Balanced, Counterweight, counterweight
 ZERO = 1e-12
 """Terms of the series that count as zero, relative to the mass of the links times the lengths."""
 OTHER_HARMONICS = tuple(range(1, 7))
-"""Harmonics of the table besides those that are cancelled."""
+"""Harmonics of the table besides the cancelled ones."""
 RATIO, OWNER = RatioRule(), "balance shafts"
 
 
 @dataclass(frozen=True, eq=False)
 class WithShafts:
-    """A machine with balance shafts; made by `balancing.shafts`.
+    """A machine with balance shafts; `balancing.shafts` returns it.
 
     Attributes
     ----------
@@ -41,9 +41,9 @@ class WithShafts:
         Before, and with shafts and counterweight.
     shafts : tuple of BalanceShaft
     balanced : Balanced or None
-        Crank with the counterweight that stands for the shaft of the ratio 1.
+        Crank with the counterweight that replaces the shaft of ratio 1.
     harmonics : tuple of float
-        Those that are cancelled.
+        Cancelled harmonics.
 
     Examples
     --------
@@ -101,24 +101,24 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
     Parameters
     ----------
     scene : Scene or Solution
-        Masses of its links and springs count, and shafts it has already.
+        Its links, springs and existing shafts count.
     harmonics : sequence of numbers
-        In turns of the crank: 1, 2, 4; fractions too where the motion repeats after several turns.
+        Orders per turn of the crank: 1, 2, 4; fractions if the motion repeats after several turns.
     at : (x, y) or dict of ratio to (x, y)
-        Axes of the shafts, m; with a dict O for those it lacks. A force beside O has a moment.
+        Axes of the shafts, m; O for shafts that the dict lacks. A force off O has a moment.
     crank : Counterweight, optional
-        A counterweight on the crank takes the place of the shaft of the ratio 1; its mass or arm, and limits.
+        A counterweight on the crank that replaces the shaft of ratio 1: its mass or arm, and limits.
 
     Returns
     -------
     WithShafts
-        `scene`, `shafts`, and a `table` of the harmonics. A circle that the force lacks has none.
+        `scene`, `shafts`, and a `table` of the harmonics. A zero term needs no shaft.
 
     Raises
     ------
     ParameterError
         Neither a scene nor a solution, a batch of designs, or one that does not close all round; a harmonic that is
-        not positive, given twice, or a fraction that the motion does not have; a counterweight that breaks its limits.
+        not positive, given twice, or a fraction that the motion does not have; a counterweight beyond its limits.
 
     Examples
     --------

@@ -16,11 +16,12 @@ from ..errors import ParameterError
 from ..machine.builders import four_bar
 from ..machine.group import FRAME, Bar
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..numbers.planar import cross, dot
 
 
 class FourBar(NamedTuple):
-    """Crank and coupler in a row, rocker from its fixed pivot (x, y) to where the coupler ends."""
+    """Crank and coupler in a row, rocker from its fixed pivot (x, y) to the end of the coupler."""
 
     crank: Bar
     coupler: Bar
@@ -75,18 +76,20 @@ class Grashof:
     turning_joints : tuple of str
         Joints whose two links turn fully against each other.
     intervals : tuple of (float, float)
-        Crank-angle intervals in which it closes, rad, start in [0, 2 pi); one whole turn if the crank turns fully.
+        Crank-angle intervals in which it closes, rad, start in [0, 2 pi); one full turn if the crank makes full turns.
 
     Examples
     --------
     >>> import kinetostatics as ks
     >>> ks.linkage.grashof(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)))
-    Grashof(kind='crank-rocker', turning_joints=('O', 'A'), intervals=((0.0, 6.283185307179586),))
+    Grashof(kind='crank-rocker', turning_joints=('O', 'A'), intervals=((0, 6.28319),) rad)
     """
 
     kind: str
     turning_joints: tuple[str, ...]
     intervals: tuple[tuple[float, float], ...]
+
+    __repr__ = repr_with_units(intervals="rad")
 
 
 KIND_BY_SHORTEST = {
@@ -103,7 +106,7 @@ def grashof(mechanism):
 
     The shortest link turns fully against its neighbours if it and the longest are together shorter than the other two
     (Grashof's rule, as in Uicker, Pennock and Shigley). Equality makes a change-point linkage: there the links come to
-    lie in one line, velocities at that angle are undefined, and on both sides of it the assembly is the chosen one.
+    lie in one line, velocities are undefined there, and the assembly on both sides is the chosen one.
 
     Parameters
     ----------
@@ -117,7 +120,7 @@ def grashof(mechanism):
     Raises
     ------
     ParameterError
-        The mechanism is no four-bar of one design, or its pivots coincide.
+        The mechanism is not a four-bar of one design, or its pivots coincide.
 
     Examples
     --------
@@ -156,7 +159,7 @@ def grashof(mechanism):
 
 
 def four_bar_of(mechanism):
-    """The bars of a four-bar; refused for any other mechanism."""
+    """The bars of a four-bar; an error for any other mechanism."""
     checks.require("linkage", checks.mechanism("mechanism", mechanism))
     bars = four_bar_shape(mechanism)
     if bars is None:
@@ -223,8 +226,8 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     crank_length, coupler_length, rocker_length : float or array
         m; in the relative form rho, 1, lambda.
     pivot_x : float or array, optional
-        Free start (the study's variant 2). Without it parallel start (variant 1): crank and rocker are parallel when
-        the crank points along +y, so pivot_x = sqrt(coupler_length^2 - crank_length^2).
+        Free start (the study's variant 2). By default the start is parallel (variant 1): crank and rocker are parallel
+        when the crank points along +y, so pivot_x = sqrt(coupler_length^2 - crank_length^2).
     **links
         Links crank, coupler, rocker, and assembly, as for `four_bar`.
 
@@ -235,7 +238,7 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
     Raises
     ------
     ParameterError
-        The coupler is shorter than the crank, so the parallel start is not possible.
+        The coupler is shorter than the crank, so the parallel start is impossible.
 
     Examples
     --------
@@ -274,7 +277,7 @@ def chain_unit_angle(angle):
     Raises
     ------
     ParameterError
-        The angle is no number.
+        The angle is not a number.
 
     Examples
     --------
@@ -287,14 +290,14 @@ def chain_unit_angle(angle):
 
 
 def rocker_angle(solution, start=QUARTER):
-    """Angle of the rocker, clockwise from where it stands at the crank angle `start`, (..., N), rad.
+    """Angle of the rocker, clockwise from its position at the crank angle `start`, (..., N), rad.
 
     Parameters
     ----------
     solution : Solution
-        Of a four-bar.
+        Solution of a four-bar.
     start : float
-        rad; where crank and rocker of the chain unit are parallel unless told.
+        rad; by default the angle at which crank and rocker of the chain unit are parallel.
 
     Returns
     -------
@@ -338,7 +341,7 @@ def transmission_angle(solution):
     Parameters
     ----------
     solution : Solution
-        Of a four-bar.
+        Solution of a four-bar.
 
     Returns
     -------
@@ -372,7 +375,7 @@ class Swing:
     largest, smallest : float
         Extreme rocker angles psi, rad.
     largest_at, smallest_at : float
-        Crank angles where they are reached, rad, as the library counts them.
+        Crank angles of the extremes, rad, counter-clockwise from +x.
 
     Examples
     --------
@@ -388,9 +391,11 @@ class Swing:
     largest_at: float
     smallest_at: float
 
+    __repr__ = repr_with_units(largest="rad", smallest="rad", largest_at="rad", smallest_at="rad")
+
     @property
     def range(self):
-        """Whole angle swept, rad."""
+        """Total swing angle, rad."""
         return self.largest - self.smallest
 
     @property
@@ -400,7 +405,7 @@ class Swing:
 
 
 def has_swinging_rocker(mechanism):
-    """Whether the mechanism is a four-bar whose crank turns fully and whose rocker does not."""
+    """Whether the mechanism is a four-bar whose crank makes full turns and whose rocker does not."""
     bars = four_bar_shape(mechanism)
     return bars is not None and _rocker_swings(bars, grashof(mechanism))
 
@@ -410,12 +415,12 @@ def _rocker_swings(bars, found_class):
 
 
 def swing(solution, start=QUARTER):
-    """Swing of the rocker, from the true extremes of its angle.
+    """Swing of the rocker, from the exact extremes of its angle.
 
     Parameters
     ----------
     solution : Solution
-        Of a four-bar whose crank turns fully.
+        Solution of a four-bar whose crank makes full turns.
     start : float
         Crank angle at which the rocker angle is zero, rad; +y as in the study.
 
@@ -426,7 +431,7 @@ def swing(solution, start=QUARTER):
     Raises
     ------
     ParameterError
-        The solution is not of a four-bar, its crank does not turn fully, or its rocker does.
+        The solution is not of a four-bar, its crank does not make full turns, or its rocker does.
 
     Examples
     --------
@@ -441,7 +446,7 @@ def swing(solution, start=QUARTER):
     found_class = grashof(solution.mechanism)
     if not _rocker_swings(bars, found_class):
         raise ParameterError(
-            "swing is for four-bars whose crank turns fully and whose rocker does not; this one is a "
+            "swing is for four-bars whose crank makes full turns and whose rocker does not; this one is a "
             f"{found_class.kind}{'' if found_class.intervals == FULL_TURN else ' that does not close all round'}"
         )
     found = extremes(solution, lambda at: rocker_angle(at, start))
@@ -455,10 +460,10 @@ def _bars_of(solution):
 
 
 def _speed_problem(name, solution):
-    """Sentence about a solution without a crank speed to compare with, or None."""
+    """Sentence about a solution without crank speed, or None."""
     problem = checks.solution(name, solution)
     if problem is None and np.any(np.asarray(solution.crank_speed) == 0):
-        return f"{name}: the crank speed is 0, but speeds are compared with it; give one"
+        return f"{name}: the crank speed is 0, but speeds are relative to it; give a crank speed"
     return problem
 
 
@@ -468,9 +473,9 @@ def characteristics(solutions, reference):
     Parameters
     ----------
     solutions : dict of name to Solution
-        Four-bars whose crank turns fully.
+        Four-bars whose crank makes full turns.
     reference : str
-        Name of the one that amplitudes and speeds are compared with.
+        Name of the reference for amplitudes and speeds.
 
     Returns
     -------
@@ -480,7 +485,7 @@ def characteristics(solutions, reference):
     Raises
     ------
     ParameterError
-        There is no such reference, or a solution is of something else or of a crank that stands still.
+        The reference is unknown, or a solution is not of such a four-bar with a turning crank.
 
     Examples
     --------

@@ -1,8 +1,8 @@
-"""Reductions of curves with exact derivatives by the numbers of the design: formulas of `cycle.reductions`.
+"""Reductions of curves, with exact derivatives by the numbers of the design: formulas of `cycle.reductions`.
 
-`Curve` has values evenly over the period, `PiecewiseCurve` on its pieces between kinks. Where a peak lies at a kink,
-which moves with the design, f and its derivatives hold on both sides, so f' dphi + df is the same and gives the shift.
-Where a curve jumps, the place of the jump is taken as it is.
+`Curve` has values evenly over the period, `PiecewiseCurve` on its pieces between kinks. A peak at a kink moves with the
+design: f and its derivatives exist on both sides, and f' dphi + df is the same there, which gives the shift. The place
+of a jump counts as fixed.
 """
 
 from typing import Any, NamedTuple
@@ -16,19 +16,19 @@ from ..cycle.piecewise_reductions import gained as gained_on
 from ..cycle.reductions import Output, gained
 
 SECTORS = 72
-"""Parts of the period whose largest values are limited one by one: where peaks compete, each counts."""
+"""Number of parts of the period with separate limits of their largest values, so that each competing peak counts."""
 WIDER = 12
-"""The same where each largest value is taken with each smallest."""
+"""The same if each largest value is combined with each smallest one."""
 SIDES = {"largest": (1.0,), "smallest": (-1.0,), "largest_absolute": (1.0, -1.0), "swing": (1.0, -1.0)}
-"""By reduction that is a largest value: which sides of a quantity, or its integral, its extreme is on."""
+"""Sides of a quantity or its integral whose peaks count, by reduction."""
 _AROUND = np.arange(-REACH, REACH + 1)
 _ORDERS = np.arange(2 * REACH + 1)
 JUMP_TOLERANCE = 1e-6
 """Difference of the values on both sides of an edge, relative to the largest value, above which it is a jump."""
 KINK_TOLERANCE = 1e-4
-"""Change of the slope from one piece to the next, by the largest value over the period, that is no kink."""
+"""Largest change of slope between pieces, relative to the largest value over the period, that is no kink."""
 ZERO_SQUARE = 1e-13
-"""Square of a magnitude, relative to the largest, that is 0 but for rounding."""
+"""Square of a magnitude, relative to the largest, that is zero to rounding."""
 
 
 def reduced(reduction, curve):
@@ -45,9 +45,9 @@ def reduced(reduction, curve):
 
 
 def bounded(reduction, curve):
-    """Values (parts,) whose largest is a reduction of `SIDES`, of "smallest" its negative, with derivatives (n, parts).
+    """Values (parts,) whose maximum is a reduction in `SIDES` ("smallest": its negative), and derivatives (n, parts).
 
-    Where peaks compete, each counts.
+    Each competing peak counts.
     """
     if reduction != "swing":
         parts = [curve.tops(side, SECTORS) for side in SIDES[reduction]]
@@ -67,8 +67,8 @@ class Curve(NamedTuple):
     def tops(self, side, sectors, energy=False):
         """Largest value, times a side, in each of some equal parts of the period (parts,), with derivatives (n, parts).
 
-        Of the curve, or of its integral. A peak between samples is that of the polynomial through the samples around
-        it, where they go together.
+        The curve or its integral is meant. A peak between samples is the peak of the polynomial through its neighbours,
+        if they fit a polynomial.
         """
         if energy:
             return Curve(self.turns * gained(self.values), self.turns * gained(self.slopes)).tops(side, sectors)
@@ -107,9 +107,9 @@ def size(values, slopes):
 
 
 def _through_peaks(samples):
-    """Weights of the samples around peaks (peaks, samples) in their heights; of the middle one alone where need be.
+    """Weights (peaks, samples) of the samples around peaks in the heights; at need only of the middle one.
 
-    That is, where it is no peak, or the samples do not go together, as at a jump.
+    That is the case if it is no peak, or the samples do not fit a polynomial, as at a jump.
     """
     bends = np.diff(samples, 2)[:, REACH - 2 : REACH + 1]
     peaks = np.flatnonzero((bends < 0).all(axis=1) & (samples[:, REACH - 1 : REACH + 2].argmax(axis=1) == 1))
@@ -129,7 +129,7 @@ def _through_peaks(samples):
 
 
 def _mean_absolute(values):
-    """Mean magnitude: samples less what their kinks add, where the sign changes on a straight line between two."""
+    """Mean magnitude: samples less the excess from kinks, for straight lines across the sign changes."""
     count = values.size
     sign, weights = np.where(values < 0.0, -1.0, 1.0), np.zeros(count)
     here = np.flatnonzero(sign != np.roll(sign, -1))
@@ -160,7 +160,7 @@ class PiecewiseCurve(NamedTuple):
         return found, np.tensordot(self.slopes, weights, 2)
 
     def tops(self, side, sectors, energy=False):
-        """As `Curve.tops`; the energy is the integral of what the curve is above its mean."""
+        """As `Curve.tops`; the energy is the integral of the curve less its mean."""
         pieces, square = self.pieces, self.vector and not energy
         values = self.values**2 if square else self.values
         slopes = 2.0 * self.values * self.slopes if square else self.slopes
@@ -176,7 +176,7 @@ class PiecewiseCurve(NamedTuple):
         if square:
             height = np.sqrt(np.maximum(side * found, np.finfo(float).tiny))
             rises = np.where(height**2 > ZERO_SQUARE * values.max(), changes / (2.0 * height), 0.0)
-            return side * height, rises  # a magnitude of 0 stays one, to first order
+            return side * height, rises  # a magnitude of 0 stays 0, to first order
         return found, changes
 
     def _summits(self, values, sectors):

@@ -1,4 +1,4 @@
-"""Optimisation of any machine under limits: goal and limits are texts, limits hold at true extremes."""
+"""Optimisation of any machine under limits: goal and limits are texts, limits hold at exact extremes."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -23,9 +23,9 @@ ANGLES = 720
 MIN_ANGLES = 12
 """Fewest crank angles of a curve."""
 MISSED = 1e3 * LIMIT_TOLERANCE
-"""Excess over a limit, relative to its size, that counts as missed by a search."""
+"""Excess over a limit, relative to its size, above which a search has missed the limit."""
 MAX_TIGHTENINGS = 4
-"""Tightenings of the limits until true extremes keep them."""
+"""Largest number of times that limits are tightened until exact extremes keep them."""
 
 
 def optimise(
@@ -48,54 +48,54 @@ def optimise(
 ):
     """Best machine within bounds and limits.
 
-    Derivatives are exact, from the recorded program; the optimiser is SciPy's SLSQP. Limits hold at true extremes.
+    Derivatives are exact, from the recorded program; the optimiser is SciPy's SLSQP. Limits hold at exact extremes.
 
     Parameters
     ----------
     source : Case, Scene, variant or duties
         In a case, derived numbers follow the varied ones, as for `sweep`. Duties are a dict of name to (scene, share of
-        the time) of one machine: ``{"idle": (scene, 0.2), "cut": (other, 0.8)}``. What varies is the same in all; the
-        goal is the mean of the output in each, weighted by the shares.
+        the time) of one machine: ``{"idle": (scene, 0.2), "cut": (other, 0.8)}``. All duties share the varied numbers;
+        the goal is the mean of the output over the duties, weighted by the shares.
     vary : dict of path to (low, high)
         Numbers in SI or texts with units: ``{"spring.stiffness": ("600 kN/m", "900 kN/m")}``.
     minimise, maximise : str
-        One of the two: an output as sweeps have them, "mean_absolute balancing_torque", "largest O", "largest
+        One of the two: an output as in sweeps, "mean_absolute balancing_torque", "largest O", "largest
         contact_pressure", "swing balancing_torque", "ratio mean_absolute balancing_torque" ...
     limits : sequence of str
         "largest O <= 0.75 kN", "largest slider_position = 2.3 m", "ratio mean_absolute balancing_torque >= 50" ...
-        Numbers of parts, "main_bearing.life_hours >= 20000 h" or `sizing.Part.limit`, have central differences for
-        derivatives. Of duties each limit holds in all, "cut: largest O <= 40 kN" in one, "mean: ..." of the weighted
+        Numbers of parts, "main_bearing.life_hours >= 20000 h" or `sizing.Part.limit`, have derivatives by central
+        differences. With duties each limit holds in all, "cut: largest O <= 40 kN" in one, "mean: ..." for the weighted
         mean.
     numbers : sequence of SolutionNumber
-        Functions of a solution that goal and limits name, as the mains energy of a turn under a motor; their
+        Functions of a solution named in goal and limits, such as the mains energy of a turn under a motor; their
         derivatives are central differences.
     variant, reference : str
-        As for `sweep`; of a scene `reference` is a `Scene`, of duties one for all or a dict.
+        As for `sweep`. For a scene `reference` is a `Scene`, for duties one scene for all or a dict.
     robust : Spread, optional
-        Makes a quantile of the output over spreads of numbers the goal.
+        Goal: a quantile of the output over spreads of numbers.
     begin : dict of path to float, optional
-        Start of the first search, in place of the source.
+        Start of the first search; by default the source.
     starts : int
-        Searches: the first begins at the source itself, others at designs within the bounds (scrambled Sobol).
+        Number of searches: the first begins at the source, others within the bounds (scrambled Sobol).
     seed : int
     angles : int
         Crank angles over the period of the loads.
     engine : "numpy" or "compiled"
-        A loop of many parameters compiles slowly and pays for long studies.
+        "compiled" saves time in long studies; a loop with many parameters compiles slowly.
     progress : bool
-        Show a bar that counts the steps of the search.
+        Whether a bar shows the steps of the search.
 
     Returns
     -------
     Found
-        Of duties its scenes are dicts by name.
+        With duties its scenes are dicts by name.
 
     Raises
     ------
     ParameterError
-        A text cannot be read, or names an output that the machine lacks.
+        A text cannot be read, or names an unknown output.
     DesignError
-        No design keeps the limits; the message names the nearest.
+        No design keeps the limits; the message describes the nearest.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def named_numbers(source, numbers):
 
 
 def _duty_task(duties, minimise, maximise, limits, angles, parts):
-    """Task of a search, its limits each of their duty, and the quantities that each duty needs by name."""
+    """Task of a search with the duty of each limit, and the quantities of each duty by name."""
     limited = {"": limits} if "" in duties else limits_of(limits, duties)
 
     def own_task(name, duty):
@@ -168,7 +168,7 @@ def _duty_task(duties, minimise, maximise, limits, angles, parts):
 
 
 class Task(NamedTuple):
-    """Task of a search: an output, as `text` names it, times `sign` is to become least under limits."""
+    """Task of a search: minimise `sign` times an output, named by `text`, under limits."""
 
     text: str
     output: Output | SolutionNumber
@@ -182,7 +182,7 @@ class Task(NamedTuple):
 
 
 def parse_task(scene, minimise, maximise, limits, reference, angles, kept=(), parts=None) -> Task:
-    """Task of a search from texts, with the limits `kept` first; refused without a reference or angles it needs."""
+    """Task of a search from texts, with the limits `kept` first; an error without a needed reference or angles."""
     if (minimise is None) == (maximise is None):
         raise ParameterError('design: give either minimise or maximise, an output such as "largest O"')
     sign, text = (1.0, minimise) if maximise is None else (-1.0, maximise)
@@ -194,7 +194,7 @@ def parse_task(scene, minimise, maximise, limits, reference, angles, kept=(), pa
     orders = [output.order for output in task.outputs if isinstance(output, Output)]
     needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders if order)])
     if angles < needed:
-        raise ParameterError(f"design: angles must be at least {needed} for the outputs asked for, got {angles}")
+        raise ParameterError(f"design: angles must be at least {needed} for the given outputs, got {angles}")
     return task
 
 
@@ -228,7 +228,7 @@ def _numbers_text(problem, values):
 def best_design(problem, task, begins, reported, robust, progress) -> Found:
     """Best of the searches from several designs for a task, or for the quantile of its output over a spread.
 
-    Raises `DesignError` if no design keeps the limits at true extremes.
+    Raises `DesignError` if no design keeps the limits at exact extremes.
     """
     text, output, sign, limits = task
     checks.require(
@@ -236,11 +236,11 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
         None if robust is None else spread_problem("robust", robust),
         None
         if robust is None or isinstance(output, Output)
-        else f"{str(output)!r} is a number of a part, which cannot be robust; make it a limit",
+        else f"{str(output)!r} is a number of a part, which has no quantile; use it as a limit",
     )
     goal = Goal(output if robust is None else sampled_output(problem, output, robust, sign), sign)
     searched, plain = _without_ratios(problem, goal, limits)
-    # limits by tables over travel join them; of a robust goal they hold for each machine of the spread
+    # limits by tables over travel are added; for a robust goal they hold for each machine of the spread
     own = (*problem.table_limits, *(goal.output.within_tables() if robust is not None else ()))
     kept = (*limits, *own)
     with progress_bar(problem, progress):
@@ -274,7 +274,7 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
 
 
 def _without_ratios(problem, goal, limits):
-    """Goal and limits with ratios replaced by their denominators, where the reference does not vary."""
+    """Goal and limits with ratios replaced by their denominators, if the reference does not vary."""
     if set(problem.names) & set(SHARED_NUMBERS):
         return goal, limits
     turned, found = {"<=": ">=", ">=": "<=", "=": "="}, []
@@ -291,11 +291,11 @@ def _without_ratios(problem, goal, limits):
 
 
 def _failure_text(problem, goal, limits, best, count):
-    """Sentence about the nearest design of failed searches, or about what keeps designs from being built."""
+    """Sentence about the nearest design of failed searches, or the obstacle to any design."""
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
         numbers = _numbers_text(problem, best.values)
-        obstacle = f"the one with {numbers} runs, but outputs asked for have no value"
+        obstacle = f"the one with {numbers} runs, but wanted outputs have no value"
         whose = ""
         try:
             for part in problem.parts.values():
@@ -304,7 +304,7 @@ def _failure_text(problem, goal, limits, best, count):
                     values_of(solution, name)
             if callable(goal.output):
                 spreads = ", ".join(goal.output.spread.spreads)
-                whose = f", of which a machine within the spread of {spreads} fails"
+                whose = f", whose spread of {spreads} contains a machine that fails"
                 goal.output.outputs(best.values)
         except KinetostaticsError as error:
             obstacle = f"with {numbers}{whose}: {error}"
@@ -313,7 +313,7 @@ def _failure_text(problem, goal, limits, best, count):
             f"{', '.join(problem.names)}, or begin with a machine that runs"
         )
     reached = [
-        f"{limit}, where it comes to {problem.duty(limit.duty).output(limit.output, best.values)[0]:.6g}"
+        f"{limit}, where it is {problem.duty(limit.duty).output(limit.output, best.values)[0]:.6g}"
         for limit in limits
         if worst_excess(problem, [limit], best.values) > MISSED
     ]
@@ -327,7 +327,7 @@ def _failure_text(problem, goal, limits, best, count):
 
 
 def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
-    """The design with limits kept at true extremes: tighten them by the excess between samples and search again."""
+    """The design with limits kept at exact extremes: tighten them by the excess between samples, search again."""
     drawn, scales = list(limits), np.array([limit.scale for limit in limits])
     equal = np.array([limit.relation == "=" for limit in limits], dtype=bool)
     for left in reversed(range(MAX_TIGHTENINGS + 1)):
@@ -349,7 +349,7 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
         best = search_from(problem, goal, drawn, best.values, rounds=2)
     if failure is None and worst <= LIMIT_TOLERANCE:
         return best
-    why = f"limits hold there, but are missed by {worst:.2g} of their size between; give more angles"
+    why = f"limits hold there, but between them the excess is {worst:.2g} of the limit; give more angles"
     raise DesignError(
         f"the best design so far, {_numbers_text(problem, best.values)}, was found at {problem.angles} crank angles: "
         f"{why if failure is None else failure}",
@@ -358,9 +358,9 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
 
 
 def _true_excess_of(problem, limit, values):
-    """Excess of a design over a limit at true extremes, not positive if it is kept; of an equality the difference.
+    """Excess of a design over a limit at exact extremes, not positive if it is kept; for an equality the difference.
 
-    Of an output over a spread or a ratio it is that at the crank angles of the search.
+    For an output over a spread, or a ratio, it is the excess at the crank angles of the search.
     """
     if not isinstance(limit.output, Output) or limit.output.ratio:
         return excess_over(problem, limit, values)[0][0]

@@ -1,4 +1,4 @@
-"""Pareto fronts: the best of one output for each value of another, between the best of each alone."""
+"""Pareto fronts: the best of one output for each value of another, between the separate optima of both."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import DesignError
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from .constraints import MEAN, Constraint, limit_list, parse_output
 from .duties import in_each, mean_value, read_duties
 from .optimisation import ANGLES, named_numbers, optimise
@@ -15,7 +16,7 @@ from .problem import scene_of
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Designs of which none is better in both outputs; made by `pareto` and `balancing.pareto`.
+    """Designs none of which is better in both outputs; `pareto` and `balancing.pareto` return it.
 
     `ks.plots.front` draws it.
 
@@ -25,7 +26,7 @@ class Front:
     table : pandas.DataFrame
         A row for each design: both outputs, and the numbers that varied.
     designs : tuple of Found
-        Of `balancing.pareto` of Balanced.
+        From `balancing.pareto`: tuple of Balanced.
     before : (float, float)
         Outputs of the source.
 
@@ -45,6 +46,8 @@ class Front:
     designs: tuple[Any, ...] = field(repr=False)
     before: tuple[float, float]
 
+    __repr__ = repr_with_units()
+
 
 def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, reference=None, seed=0, starts=1, **options):
     """Pareto front of two outputs.
@@ -52,12 +55,12 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Parameters
     ----------
     source, vary, limits, variant, reference, starts, seed
-        As for `optimise`; of duties both outputs are weighted means.
+        As for `optimise`; with duties both outputs are weighted means.
     minimise : (str, str)
         Two outputs; a "-" before one maximises it: ("largest_absolute cam_force", "-ratio mean_absolute
         balancing_torque").
     points : int
-        Designs on the front, at least 2: evenly between the ends, by the second output, of a ratio by its logarithm.
+        Number of designs on the front, at least 2, evenly spaced by the second output (a ratio by its logarithm).
     **options
         `angles`, `engine`, `numbers` and `progress` of `optimise`.
 
@@ -68,7 +71,7 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     Raises
     ------
     ParameterError
-        A text cannot be read, or names an output that the machine lacks.
+        A text cannot be read, or names an unknown output.
     DesignError
         No design keeps the limits.
 

@@ -1,7 +1,7 @@
 """A design problem: curves of a scene over the period, with exact derivatives by the varied numbers, and their outputs.
 
-The chain rule joins the derivatives of the recorded program by the scene's numbers with those of derived numbers by
-varied ones (`DerivedNumbers`). Ratios divide the reference's output by the design's.
+The chain rule combines derivatives of the recorded program by the scene's numbers and derivatives of these numbers by
+varied numbers (`DerivedNumbers`). Ratios divide the reference's output by the design's.
 """
 
 from contextlib import contextmanager
@@ -32,8 +32,8 @@ from .constraints import table_limits
 class DerivedNumbers:
     """Numbers of a scene as functions of varied ones, with exact derivatives.
 
-    A case file derives numbers from others, as a mass centre at mid-length. The variant is built once on recording
-    numbers; the recording gives the numbers at `paths` of the scene and their derivatives by those at `names`.
+    A case file derives numbers from others, for example a mass centre at mid-length. The variant is built once with
+    recording numbers, which gives the numbers at `paths` of the scene and their derivatives by those at `names`.
     """
 
     def __init__(self, source, names):
@@ -46,8 +46,8 @@ class DerivedNumbers:
             raise
         except (TypeError, AttributeError, ValueError) as error:
             raise NotGivenError(
-                f"what follows from {', '.join(self.names)} cannot be derived ({error}); vary numbers of the variant's "
-                "scene instead, for which all others stay"
+                f"numbers that follow from {', '.join(self.names)} have no derivatives ({error}); vary numbers of the "
+                "variant's scene instead, where all others are constant"
             ) from error
         places = paths.places_by_path(scene)
         found = {path: place.value(made) for path, place in places.items()}
@@ -75,7 +75,7 @@ def scene_of(item):
 DIFFERENCE_STEP = 1e-4
 """Step of a central difference over the range of the number that varies."""
 BAR_DELAY = 1.0
-"""Seconds of work after which a bar appears."""
+"""Duration of work, s, after which a bar appears."""
 
 
 @contextmanager
@@ -90,9 +90,9 @@ def progress_bar(problem, wanted=True, label=None):
 
 
 SHARED_NUMBERS = ("crank_speed", "crank_acceleration")
-"""Numbers that the reference shares with the design."""
+"""Numbers shared by reference and design."""
 MAX_CACHED_DESIGNS = 8
-"""Designs with cached curves."""
+"""Number of designs with cached curves."""
 
 
 class Problem:
@@ -100,12 +100,12 @@ class Problem:
 
     Parameters
     ----------
-    source : Scene, or what has `.scene` and `.varied(values)`, as a case's variant
+    source : Scene, or object with `.scene` and `.varied(values)`, such as a case's variant
     vary : mapping of path to (low, high)
         SI numbers, or texts with units.
     quantities : sequence of str
     reference : Scene or alike, optional
-        Reference of ratios; it runs at the design's speed, its other numbers stay.
+        Reference of ratios; it runs at the design's speed, with its other numbers constant.
     angles : int
         Crank angles evenly over the period.
     engine : "numpy" or "compiled"
@@ -164,7 +164,7 @@ class Problem:
         return np.clip(np.array(values, dtype=float), self.low, self.high)
 
     def duty(self, name):
-        """Problem of a duty: this one, for it has no others."""
+        """Problem of a duty: this one, as there are no others."""
         return self
 
     def numbers(self, values):
@@ -223,7 +223,7 @@ class Problem:
         return above / found, (rises - above / found * slopes) / found
 
     def _number(self, output, values):
-        """Number of the solution of a design, and its derivatives by central differences; NaN where there is none."""
+        """Number of the solution of a design, and its derivatives by central differences; NaN if there is none."""
         step = DIFFERENCE_STEP * (self.high - self.low)
         sides = [np.clip(values + side * np.diag(step), self.low, self.high) for side in (1.0, -1.0)]
         found = [self._value(output, design) for design in (values, *np.concatenate(sides))]
@@ -244,7 +244,7 @@ class Problem:
         empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan), self.turns)
         found = dict.fromkeys(self.quantities, empty)
         for program in (self.program, self._motion) if self.table_limits else (self.program,):
-            try:  # the motion still has values where a slider leaves its table
+            try:  # the motion has values even if a slider leaves its table
                 numbers, changes = self.derived(values)
                 curves = program(self.angle, numbers)
                 slopes = program.derivatives(self.angle, self.derived.paths, numbers)
@@ -270,7 +270,7 @@ class Problem:
 
 
 def without_ratio(output):
-    """The output in place of its ratio to that of the reference."""
+    """The output itself, for a ratio to the reference."""
     return replace(output, ratio=False)
 
 
@@ -283,7 +283,7 @@ def choose_design(source, variant, reference):
         "design",
         design_problem("source", source, "a Case, as of ks.load_case, or a Scene"),
         None if variant is None else "variant is for cases; a Scene has none",
-        None if reference is None else design_problem("reference", reference, "a Scene, as the source is"),
+        None if reference is None else design_problem("reference", reference, "a Scene, like the source"),
     )
     return source, reference
 
@@ -305,14 +305,14 @@ def compared_value(output, scene, reference):
 
 
 def true_value(output, scene, angles=5760):
-    """Value of an output of a scene, exact to rounding where it is smooth; `DesignError` if no pieces resolve it."""
+    """Value of an output of a scene, exact to rounding if it is smooth; `DesignError` if no pieces resolve it."""
     plain, turns = without_ratio(output), turns_of(scene)
     if has_kinks(unchecked_turn(scene, 1), output.quantity):
         ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
         if rough:
             raise DesignError(
-                f"{plain} of {scene.mechanism.name} is not resolved, however fine the pieces of the turn; if a load "
-                "jumps, let it rise over a degree, or tell where by kinks(motion)"
+                f"{plain} of {scene.mechanism.name} is not resolved even by the finest pieces of the turn; if a load "
+                "jumps, let it rise over a degree, or declare the place by kinks(motion)"
             )
         return float(found)
     values = values_of(scene.solve(angles), output.quantity)
@@ -326,7 +326,7 @@ def turns_of(scene):
 
 
 def parse_bounds(source, vary):
-    """Lowest and highest value of each number that varies; one `ParameterError` for all that do not."""
+    """Lowest and highest value of each number that varies; one `ParameterError` for all that cannot."""
     if not hasattr(vary, "items") or not vary:
         raise ParameterError(
             'design: vary must be a dict of path to (low, high), such as {"spring.stiffness": ("600 kN/m", "900 kN/m")}'
@@ -337,7 +337,7 @@ def parse_bounds(source, vary):
     for path, given in vary.items():
         problem = checks.choice("parameter", path, tuple(known))
         if problem is None and own[path] is None and path not in scene:
-            problem = f"{path} is not told in the source, and absent from its scene; give it a value to begin with"
+            problem = f"{path} is neither in the source nor in its scene; give it a start value"
         elif problem is None:
             try:
                 low, high = given

@@ -30,36 +30,36 @@ ACTIVE_TOLERANCE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """The result of a search; made by `optimise` and `torque_free_cam`.
+    """The result of a search; `optimise` and `torque_free_cam` return it.
 
     Attributes
     ----------
-    scene : Scene, of duties a dict of them by name
+    scene : Scene, or with duties a dict of scenes by name
     values : dict of path to float
-        Of the numbers that varied, SI.
+        Varied numbers, SI.
     before : Scene or dict
-        What the search began with.
+        The source of the search.
     reference : Scene, dict or None
-        What ratios refer to.
+        Reference of ratios.
     limits : tuple of Constraint
     goal : str
-        The goal in words.
+        The goal as text.
     active : tuple of str
         Active limits and bounds.
     prices : dict of str to float
         Gain of the goal if an active limit or bound is relaxed by one unit.
     evaluations : int
-        Of all derivatives, by all starts.
+        Number of evaluations of all derivatives, by all starts.
     starts : list of float
         The goal of each start; infinite, or a ratio of 0, if its limits are not kept.
     bound : float
-        Greatest ratio of mean torques that a symmetric cam reaches under weight; infinite where none binds.
+        Largest ratio of mean torques of a symmetric cam under weight; infinite without this limit.
     spread : (Output, Spread, float) or None
-        Of a robust design: output, spread, and sign (-1: maximised) of its quantile.
+        For a robust design: output, spread, and sign (-1: maximised) of its quantile.
     shaft_radius : float or None
-        Of the shaft at O, m, where it is known.
+        Radius of the shaft at O, m, if known.
     shares : dict of str to float
-        Of the time, by duty; empty without duties.
+        Shares of the time, by duty; empty without duties.
 
     Examples
     --------
@@ -98,11 +98,11 @@ class Found:
 
     @property
     def _first(self):
-        """The scene, or that of the first duty: all have the same mechanism."""
+        """The scene, or that of the first duty; all duties have the same mechanism."""
         return next(iter(self.duties().values())).source
 
     def duties(self, before=False):
-        """Duties by name after the search, or before; a search without duties has one, of the name ""."""
+        """Duties by name after the search, or before; a search without duties has one duty, named ""."""
         scenes = self.before if before else self.scene
         if not self.shares:
             return {"": Duty(scenes, self.reference, 1.0)}
@@ -110,12 +110,12 @@ class Found:
         return {name: Duty(scenes[name], compared.get(name), share) for name, share in self.shares.items()}
 
     def duty(self, name):
-        """The result for one duty alone, as plots of one machine take it.
+        """The result for a single duty, for plots of one machine.
 
         Raises
         ------
         ParameterError
-            The search had no such duty.
+            The duty is unknown.
         """
         checks.require("found", checks.choice("duty", name, tuple(self.shares)))
         after, before = self.duties()[name], self.duties(before=True)[name]
@@ -124,9 +124,9 @@ class Found:
         return replace(self, **scenes, limits=limits, active=(), prices={}, spread=None, shares={})
 
     def report(self):
-        """Outputs before and after, with their limits and what these cost; a pandas DataFrame.
+        """Outputs before and after, with their limits and prices, a pandas DataFrame.
 
-        Of duties the goal has a row for their mean and each, other outputs where they are limited; `duty` has all.
+        With duties the goal has rows for the mean and each duty, other outputs rows for limited duties; `duty` has all.
 
         Warns
         -----
@@ -175,9 +175,9 @@ class Found:
         return with_resolution(pd.DataFrame.from_dict(rows, orient="index").rename_axis("output"), *scenes)
 
     def numbers(self):
-        """Numbers that varied, before and after, with what their bounds cost; a pandas DataFrame.
+        """Varied numbers, before and after, with the prices of their bounds, a pandas DataFrame.
 
-        Before stands NaN where the source has no such number, as of another cam.
+        Before is NaN if the source lacks the number, for example one of another cam.
         """
         import pandas as pd
 
@@ -193,13 +193,13 @@ class Found:
         return pd.DataFrame.from_dict(rows, orient="index").rename_axis("number")
 
     def case(self, path, name="optimal", title=None):
-        """Write a case file, ready to run: the design, what it was before, and what ratios refer to.
+        """Write a case file, ready to run: the design, the source, and the reference of ratios.
 
         Parameters
         ----------
         path : str or path
         name : str
-            Of the design's variant.
+            Name of the design's variant.
         title : str, optional
 
         Returns
@@ -221,32 +221,32 @@ class Found:
 
 
 def named_scenes(name, scenes):
-    """Scenes by the names of their variants: a duty is appended to the name."""
+    """Scenes by the names of their variants; the name of a duty is appended."""
     return {f"{name}-{duty}": scene for duty, scene in scenes.items()} if isinstance(scenes, dict) else {name: scenes}
 
 
 def shaft_hint(nearest, roller_radius, shaft_radius):
-    """Sentence if the roller centre is too near to O for the shaft, or None; lengths in m."""
+    """Sentence if the roller centre is too near O for the shaft, or None; lengths in m."""
     reach = shaft_radius + (roller_radius or 0.0)
     if nearest >= reach * (1.0 - DISTANCE_TOLERANCE):
         return None
     roller = f" with a roller of {roller_radius * 1e3:.4g} mm" if roller_radius else ""
     return (
-        f"the cam cuts into the shaft: the roller centre comes to {nearest * 1e3:.4g} mm from O, the shaft's radius is "
-        f"{shaft_radius * 1e3:.4g} mm{roller}; ask for at least {reach * 1e3:.4g} mm"
+        f"the cam cuts into the shaft: the roller centre is at {nearest * 1e3:.4g} mm from O, the shaft's radius is "
+        f"{shaft_radius * 1e3:.4g} mm{roller}; require at least {reach * 1e3:.4g} mm"
     )
 
 
 def active_prices(problem, goal, limits, values):
     """Active limits and bounds, and their prices: gain of the goal if one is relaxed by one unit.
 
-    The derivatives of the goal are the sum of those of the active limits, each times its price (Kuhn and Tucker).
+    The derivatives of the goal are the sum of those of the active limits times their prices (Kuhn and Tucker).
     """
     from scipy.optimize import lsq_linear
 
     output, sign = goal
     first, others = sign * problem.output(output, values)[1], np.empty((values.size, 0))
-    if is_peak(output, sign):  # of each duty a column for each of equal peaks, less that of the highest
+    if is_peak(output, sign):  # for each duty, a column for each equal peak, less the highest one
         first = np.zeros(values.size)
         for name, part in problem.parts.items():
             heights, slopes = measures.bounded(output.reduction, part.curve(output, values))
@@ -273,7 +273,7 @@ def active_prices(problem, goal, limits, values):
     weight = np.linalg.norm(matrix, axis=0)
     weight[weight == 0] = 1.0
     first, others = first * reach, others * reach[:, None]
-    shares = others.shape[1]  # of the goal's peaks beside the first, where several compete
+    shares = others.shape[1]  # of the goal's further competing peaks
     low = np.concatenate([np.where(free, -np.inf, 0.0), np.zeros(shares)])
     solved = lsq_linear(np.hstack([matrix / weight, others]), -first, (low, np.full(low.size, np.inf)))
     found: dict[str, float] = {}

@@ -39,15 +39,14 @@ class Spread:
     ----------
     quantile : float
         Between 0 and 1; a low one, such as 0.05, for an output to maximise.
-    spreads : mapping of path to text
-        Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", and in per cent of the design's value "normal
-        0 % +- 0.5 %". Only deviations from the median count, so the texts of a case's [tolerances] fit.
+        Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", or in per cent of the design's value "normal
+        0 % +- 0.5 %". Deviations count from the median, so the texts of a case's [tolerances] fit.
     samples : int
         Number of samples in the search; a power of two.
     trim : float
         Range of speed adjustment relative to the design's crank speed; each machine runs at its best speed within it.
     seed : int
-        Of the scrambled Sobol sequence.
+        Seed of the scrambled Sobol sequence.
 
     Raises
     ------
@@ -137,19 +136,19 @@ ANGLES_PER_SAMPLE, SAMPLES_PER_BLOCK = 180, 128
 """Crank angles of each sample, and samples computed at a time."""
 SPEED = "crank_speed"
 MAX_CACHED_BLOCKS = 64
-"""Blocks of samples whose curves of the reference are kept: a search asks for them again with each design."""
+"""Number of blocks of samples with cached reference curves: a search needs them for each design."""
 NEGLIGIBLE_WEIGHT = 1e-12
-"""Weight of a sample in the quantile, relative to the largest, below which its derivatives do not count."""
+"""Weight of a sample in the quantile, relative to the largest, below which its derivatives are left out."""
 SPEED_TOLERANCE = 1e-6
 """Error of the square of a trimmed speed, relative to twice its range."""
 SHIFT = 2.0
-"""Added to shares, as tolerances of minima are relative to their arguments."""
+"""Offset of shares, because tolerances of minima are relative to their arguments."""
 TRIMMED_ROUGHNESS = 1e-6
-"""Relative roughness of a trimmed quantile: the sign changes of a torque of little size lie between crank angles."""
+"""Relative roughness of a trimmed quantile: caused by sign changes of small torques between crank angles."""
 
 
 class SampledOutput:
-    """An output of a design over its spread: each number of the scene gets its own deviation in each sample.
+    """An output of a design over its spread: each number of the scene has its own deviation in each sample.
 
     A call returns the quantile and its derivatives, `outputs` the output of each sample.
     """
@@ -173,7 +172,7 @@ class SampledOutput:
             self._require_trim()
 
     def _set_output(self, output):
-        """Compile the program of an output and keep what depends on it."""
+        """Compile the program of an output and set the fields that depend on it."""
         scene = scene_of(self.problem.source)
         zeros = [path for path in self.paths if self._nominal[path] == 0.0]
         self.unit, self.ratio = output.unit, output.ratio
@@ -188,7 +187,7 @@ class SampledOutput:
         """Limits that keep all samples within load tables over travel, if the spread moves sliders."""
         limits = []
         for limit in table_limits(scene_of(self.problem.source)):
-            # all weight on one ordered sample, nearest to the limit or farthest beyond it; the copy shares deviations
+            # all weight on the ordered sample nearest to the limit or farthest beyond it; the copy shares deviations
             worst = copy.copy(self)
             worst._set_output(limit.output)
             worst.weights = np.zeros(self.count)
@@ -231,7 +230,7 @@ class SampledOutput:
         return self._design_numbers(values) if self._design_numbers else ({}, np.zeros((0, 0)))
 
     def _evaluated(self, design):
-        """The output of each sample, the same without the reference, both (samples,), and its numbers (samples, 1)."""
+        """Output of each sample, the same without the reference, both (samples,), and its numbers (samples, 1)."""
         starts = range(0, self.count, SAMPLES_PER_BLOCK)
         blocks = [self._block(self._numbers(design, slice(start, start + SAMPLES_PER_BLOCK))) for start in starts]
         found, own, parts = zip(*blocks, strict=True)
@@ -248,7 +247,7 @@ class SampledOutput:
         return numbers
 
     def _block(self, numbers):
-        """The same of some samples, whose crank speed becomes the best within the trim."""
+        """As `_evaluated` for some samples, each at its best crank speed within the trim."""
         if self.spread.trim:
             return self._at_best_speeds(numbers)
         if self._has_kinks:
@@ -281,7 +280,7 @@ class SampledOutput:
         return np.array([measures.reduced(self.output.reduction, curve)[1] for curve in curves])
 
     def _piecewise_curves(self, numbers, changes):
-        """Yield the curve of each of some samples, on pieces between its own kinks."""
+        """Yield the curve of each of some samples, on pieces between its kinks."""
         output = without_ratio(self.output)
         turns = PiecewiseTurns.of(scene_of(self.problem.source).varied(numbers), (output,), START_ANGLES * self.turns)
         for samples, pieces, _ in turns.refined((output,)):
@@ -338,7 +337,7 @@ class SampledOutput:
         return np.broadcast_to(self._reference_cache[key], (len(next(iter(numbers.values()))), self.angle.size))
 
     def _shared_numbers(self, numbers):
-        """The samples' crank speed and numbers that spread, where the reference has them too."""
+        """The samples' crank speed and numbers that spread, if the reference has them too."""
         known = scene_of(self.problem.reference).units
         return {path: numbers[path] for path in numbers if path in (*self.spread.spreads, SPEED) and path in known}
 
@@ -362,13 +361,13 @@ class SampledOutput:
         return numbers | {SPEED: np.broadcast_to(self._nominal[SPEED] * share, numbers[SPEED].shape)}
 
     def _require_trim(self):
-        """Refuse trim for outputs that are not linear in the squared speed; three speeds test it."""
+        """Refuse trim for outputs that are not linear in the squared speed, tested at three speeds."""
         problem = None
         if SPEED in self.problem.names:
             problem = f"trim sets {SPEED}, so it cannot vary too"
         elif has_kinks(unchecked_turn(scene_of(self.problem.source), 1), self.output.quantity):
             problem = (
-                f"trim takes outputs without kinks, but loads, friction or a cam's law put some into {self.output}"
+                f"trim needs outputs without kinks, but loads, friction or a cam's law cause kinks of {self.output}"
             )
         else:
             numbers = self._numbers({}, slice(0, 1))
@@ -377,7 +376,7 @@ class SampledOutput:
             share = (1.0 - squares[0]) / (squares[2] - squares[0])
             if not np.allclose(middle, _between(low, high, share), rtol=1e-9, atol=1e-9 * np.abs(middle).max()):
                 problem = (
-                    "trim takes outputs of constant parts and others that grow as the speed squared; "
+                    "trim needs outputs of constant parts and parts that grow with the squared speed; "
                     f"{self.output} does not, as with friction or dampers"
                 )
         checks.require("spread", problem)
@@ -418,8 +417,8 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     Parameters
     ----------
     source, variant, reference
-        As for `optimise`; for an optimised design pass its `.scene` and `.reference`. The reference gets the same
-        deviations, where it has the same number. Of duties it is the weighted mean, each machine the same in all.
+        As for `optimise`; for an optimised design pass its `.scene` and `.reference`. The reference has the same
+        deviations of shared numbers. With duties the result is the weighted mean, for the same machine in all.
     output : str
     spread : Spread
     samples : int
@@ -428,14 +427,14 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     Returns
     -------
     array (samples,)
-        For ``numpy.quantile``.
+        Output of each sample, for ``numpy.quantile``.
 
     Raises
     ------
     ParameterError
-        An argument is invalid or names a number that the machine lacks; or machines within the spread have no value.
+        An argument is invalid or names an unknown number; or machines within the spread have no value.
     AssemblyError
-        The machine itself does not close all round the turn.
+        The design itself does not close all round the turn.
 
     Examples
     --------
@@ -463,7 +462,7 @@ def over_spread(source, output, spread, *, variant=None, reference=None, samples
     checks.require(
         "over_spread",
         f"{without} of {found.size} machines within the spread have no {output!r}: they do not close all round the "
-        "turn, or have no value there; narrow the spreads"
+        "turn, or have no value there; use narrower spreads"
         if without
         else None,
     )
@@ -480,7 +479,7 @@ def quantile(duties, output, spread, sign):
 
 
 def _fixed_output(duties, output, spread, sign, samples=None):
-    """`sampled_output` of duties by name with no number that varies, so it has no derivatives."""
+    """`sampled_output` of duties by name without varied numbers, so without derivatives."""
     given = {"names": (), "engine": "numpy", "start": np.empty(0)}
     parts = {
         name: SimpleNamespace(source=duty.source, reference=duty.reference, **given) for name, duty in duties.items()
@@ -497,7 +496,7 @@ def _between(one, other, share):
 def _best_shares(function, count):
     """Minimiser in [0, 1] of each of several functions (K,) of arguments and their numbers, with one minimum there.
 
-    The functions are reflected at 0 and 1, so that a minimum there too lies inside a bracket.
+    The functions are reflected at 0 and 1, so that a minimum there lies inside a bracket.
     """
 
     def reflected(place, number):

@@ -1,8 +1,8 @@
 """Search for a design: a problem set up for SciPy's SLSQP, in variables scaled by singular values of the derivatives.
 
-Mean magnitudes and squares are smooth. Of a largest value each part of the period is a limit of its own; to minimise
-it, an extra unknown bounds them. Scaling matters: some combinations of a cam's harmonics change the torque a thousand
-times as much as others.
+Mean magnitudes and squares are smooth. A limit of a largest value becomes a limit for each part of the period. To
+minimise a largest value, an extra unknown bounds these parts. Scaling matters: some combinations of a cam's harmonics
+change the torque a thousand times as much as others.
 """
 
 from functools import partial
@@ -19,15 +19,15 @@ MAX_ROUNDS = 8
 MAX_STEPS = 200
 """SLSQP steps of a round."""
 FIRST_TOLERANCE, LATER_TOLERANCE = 1e-10, 1e-9
-"""Relative change of the goal that ends the first round, and later ones."""
+"""Relative change of the goal that ends the first round, and later rounds."""
 GOAL_TOLERANCE = 1e-7
 """Relative change of the goal that ends a search."""
 LIMIT_TOLERANCE = 1e-9
-"""Excess over a limit, relative to its size, that counts as kept."""
+"""Excess over a limit, relative to its size, within which a limit counts as kept."""
 MAX_RESTORING_STEPS, MAX_RESTORED_EXCESS = 5, 1e-4
 """Newton steps back to the limits, and the largest relative excess that they correct."""
 MIN_SHARE = 1e-9
-"""Smallest share of the way to a design that cannot be built, in the search for one that can."""
+"""Smallest step toward a design that cannot be built, relative to its distance, in the search for one that can."""
 INFEASIBLE_GOAL = 1e6
 """Goal of a design that cannot be built, in units of the start's goal."""
 
@@ -40,7 +40,7 @@ class Goal(NamedTuple):
 
     @property
     def roughness(self):
-        """Relative change of the goal that says nothing."""
+        """Insignificant relative change of the goal."""
         return getattr(self.output, "roughness", 0.0)
 
 
@@ -98,7 +98,7 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
     )
     values = restore_limits(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))
     reached, share = turned.reached(values), 1.0
-    while not np.isfinite(reached) and share > MIN_SHARE:  # back towards the start, which can be built
+    while not np.isfinite(reached) and share > MIN_SHARE:  # back toward the start, which can be built
         share *= 0.5
         reached = turned.reached(start + share * (values - start))
     values = start + share * (values - start) if share < 1.0 else values
@@ -135,7 +135,7 @@ def within_tables(problem, limits, start):
 def restore_limits(problem, limits, values):
     """Nearest design that keeps limits, by Newton's method from small excesses; the same design if that fails.
 
-    SLSQP may stop a little beyond limits where rounding hides the descent.
+    SLSQP may stop slightly beyond limits if rounding hides the descent.
     """
     off = worst_excess(problem, limits, values)
     reach = problem.high - problem.low
@@ -157,7 +157,7 @@ def restore_limits(problem, limits, values):
 
 
 def _restoring_step(excess, slopes, reach, low, high):
-    """Least change, in units of the reach, that removes the excess; variables that would leave their bounds stay."""
+    """Least change, in units of the reach, that removes the excess; variables at their bounds stay there."""
     free = np.ones(reach.size, dtype=bool)
     while True:
         step = np.where(free, -np.linalg.pinv(slopes * free * reach) @ excess * reach, 0.0)
@@ -217,7 +217,7 @@ class _ScaledProblem:
         self.walls = np.hstack([self.walls, np.zeros((2 * count, self.raised))])
 
     def _turn(self):
-        """Directions of the unit box, each scaled to change goal and limits by about their size, at most to the box."""
+        """Directions of the unit box, each scaled to change goal and limits by about their size, within the box."""
         rows, goal = [], self.goal_of.output
         # derivatives of limits and goal along the period, in units of their sizes
         for duty, output, unit in [

@@ -5,12 +5,12 @@ A follower of mass m on a spring of rate k, moved by a cam on a crank of constan
     mu x'^2 / 2 + k x^2 / 2 = C - E(phi)
 
 where x is the stretch, E the energy of the machine, C the level. By the derivative, the cam force is
-mu x'' + k x = -E' / x': it presses where the follower runs out as E falls and back as E rises. At a minimum of E, x'
-vanishes with x'' = a, a root of mu a^2 + k x a + E'' = 0, real only for (k x)^2 > 4 mu E''.
+mu x'' + k x = -E' / x': the contact presses if the follower moves out while E falls and back while E rises. At a
+minimum of E, x' vanishes with x'' = a, a root of mu a^2 + k x a + E'' = 0, real only for (k x)^2 > 4 mu E''.
 
-Solutions of the first-order equation converge from a maximum of E to the minima beside it, both ways: integration
-starts at maxima and goes from panel to panel by Chebyshev collocation. At a kink of E the follower keeps x, x' and
-x'' and continues on the curve after the kink.
+Solutions of the first-order equation converge from a maximum of E to the neighbouring minima, in both directions. The
+integration starts at maxima and continues from panel to panel by Chebyshev collocation. At a kink of E the follower
+keeps x, x' and x'' and continues on the curve after the kink.
 """
 
 import numpy as np
@@ -26,7 +26,7 @@ NEWTON_TOLERANCE = 3e-15
 SERIES_TOLERANCE = 1e-13
 """Size of the last coefficients, relative to the largest stretch, of a resolved panel."""
 CONTACT_TOLERANCE = 1e-9
-"""Wrong-way power relative to the largest speed times slope that counts as rounding."""
+"""Negligible power of wrong sign, relative to the largest speed times slope."""
 MIN_PANEL = 1e-7
 """Width of the narrowest panel, rad."""
 _NODES = -np.cos(np.pi * np.arange(PANEL_DEGREE + 1) / PANEL_DEGREE)
@@ -38,14 +38,14 @@ _DERIVATIVE = np.array([chebyshev.chebval(_NODES, chebyshev.chebder(row)) for ro
 def reserve(energy, low, level, mass, stiffness):
     """Spring force at an energy minimum over the force for contact, 2 sqrt(mu E''); `mass` is mu = m omega^2."""
     force = np.sqrt(2.0 * stiffness * (level - float(energy(low))))
-    bend = max(float(energy.at(low + side, 2)[2]) for side in (-1e-9, 1e-9))  # the larger of both sides of a kink
+    bend = max(float(energy.at(low + side, 2)[2]) for side in (-1e-9, 1e-9))  # the larger value of both sides of a kink
     return float(force / (2.0 * np.sqrt(mass * bend)))
 
 
 def spring_stretch(energy, level, mass, stiffness):
     """Stretch x of the spring over the crank angle, as `Panels`, m, for an energy in panels; `mass` is m omega^2.
 
-    Raises `ParameterError`, with the crank angle, where the follower lifts off: no smooth solution stays in contact.
+    Raises `ParameterError`, with the crank angle, if the follower lifts off: no smooth solution stays in contact.
     """
     rows = chebyshev.chebder(energy.coefficients, axis=1) * (2.0 / np.diff(energy.edges)[:, None])
     slope = Panels(energy.edges, np.pad(rows, ((0, 0), (0, 1))))

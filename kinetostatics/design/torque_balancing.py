@@ -1,7 +1,7 @@
 """A spring-loaded follower on a cam on the crank that evens out the torque of any machine at its design speed.
 
 The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T): the cam relaxes it as E
-rises, so the motor gives the mean torque alone. The equation of `spring_follower` includes the follower's own inertia,
+rises, so the motor gives only the mean torque. The equation of `spring_follower` includes the follower's own inertia,
 so no iteration is needed.
 """
 
@@ -31,17 +31,17 @@ from .result import shaft_hint
 
 ANGLE_COUNT = 4096
 MEAN_TOLERANCE = 1e-10
-"""Mean of a torque relative to its unevenness that counts as 0."""
+"""Negligible mean of a torque, relative to its unevenness."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TorqueBalancing:
-    """A machine with a torque-balancing cam on its crank; made by `torque_balancing_cam`.
+    """A machine with a torque-balancing cam on its crank; `torque_balancing_cam` returns it.
 
     Attributes
     ----------
     scene : Scene
-        With the follower and its spring.
+        Scene with the follower and its spring.
     reference : Scene
         The scene without the cam.
     follower : RollerFollower
@@ -51,7 +51,7 @@ class TorqueBalancing:
     energy : float
         Energy that the spring stores and returns, J.
     stretch : (float, float)
-        Of the spring, least and largest, m; includes the weight of the follower.
+        Least and largest stretch of the spring, m; includes the effect of the follower's weight.
     reserve : float
         Least ratio of the spring force to the force for contact, 2 omega sqrt(m E''); above 1.
     shaft_radius, roller_radius : float or None
@@ -94,7 +94,7 @@ class TorqueBalancing:
 
     @property
     def remaining(self):
-        """Unevenness after over unevenness before."""
+        """Unevenness after, relative to before."""
         return self.uneven[1] / self.uneven[0]
 
     @cached_property
@@ -103,29 +103,29 @@ class TorqueBalancing:
         return self.reference.solve(1), self.scene.solve(1)
 
     def _peak(self, quantity, find):
-        """Extreme of a quantity of the follower that `find` chooses, a `Peak`."""
+        """Extreme of a follower quantity, chosen by `find`, a `Peak`."""
         found = extrema(self._solutions[1], quantity + self.follower.label)
         place = int(find(found.value))
         return Peak(float(found.value[place]), float(found.angle[place]))
 
     @cached_property
     def least_contact_force(self) -> Peak:
-        """N, and the crank angle."""
+        """Least contact force, N, and its crank angle."""
         return self._peak("contact_force", np.argmin)
 
     @cached_property
     def largest_contact_force(self) -> Peak:
-        """N, and the crank angle."""
+        """Largest contact force, N, and its crank angle."""
         return self._peak("contact_force", np.argmax)
 
     @property
     def lifts_off(self):
-        """Crank-angle intervals (start, stop) of lift-off, rad; empty as designed."""
+        """Crank-angle intervals (start, stop) of lift-off, rad; empty by design."""
         return lifted(self._solutions[1], "contact_force" + self.follower.label)
 
     @cached_property
     def pressure_angle(self) -> Peak:
-        """Largest size, rad."""
+        """Largest pressure angle, without sign, rad."""
         peak = self._peak("pressure_angle", lambda values: np.argmax(np.abs(values)))
         return peak._replace(value=abs(peak.value))
 
@@ -171,12 +171,12 @@ class TorqueBalancing:
                 f"{after:.3g} after ({self.remaining:.2g})",
                 f"  spring              {self.spring.stiffness:.6g} N/m, free at {self.spring.free_position:.6g} m, "
                 f"stretched {low * 1e3:.4g} to {high * 1e3:.4g} mm, preload {self.preload:.4g} N",
-                f"  energy              {self.energy:.4g} J to and fro",
+                f"  energy              {self.energy:.4g} J stored and returned",
                 f"  follower            {self.follower.follower.mass:.4g} kg, travel {self.travel * 1e3:.4g} mm",
-                f"  contact             the spring pulls at least {self.reserve:.3g} times as much as it must",
+                f"  contact             the spring force is at least {self.reserve:.3g} times the force for contact",
                 f"  contact force       {forces[0].value:.4g} N at {np.degrees(forces[0].angle):.4g} deg, to "
                 f"{forces[1].value:.4g} N at {np.degrees(forces[1].angle):.4g}; "
-                + (f"lifts off from {lost}" if lost else "positive all the way"),
+                + (f"lifts off from {lost}" if lost else "positive at all angles"),
                 f"  pressure angle      {np.degrees(self.pressure_angle.value):.4g} deg at most",
                 f"  pitch curve         smallest radius of curvature {self.curvature_radius.value * 1e3:.4g} mm; "
                 f"smallest distance from O {nearest.value * 1e3:.4g} mm at {np.degrees(nearest.angle):.4g} deg",
@@ -185,11 +185,11 @@ class TorqueBalancing:
         )
 
     def __repr__(self):
-        return f"<TorqueBalancing: {self.reference.mechanism.name}, {self.remaining:.2g} of the unevenness left>"
+        return f"<TorqueBalancing: {self.reference.mechanism.name}, {self.remaining:.2g} of the unevenness remains>"
 
 
 def _torque_means(solution):
-    """Mean of the balancing torque, and of its distance from that, N m."""
+    """Mean of the balancing torque, and mean deviation from it, N m."""
     turn = closed_turn(solution, OWNER)
     floor = TERM_ROUNDING * turn.at.largest_torque_term
 
@@ -203,11 +203,11 @@ def _torque_means(solution):
 
 OWNER, TURN = "torque_balancing_cam", 2 * np.pi
 UNEVENNESS_TOLERANCE = 1e-10
-"""Unevenness relative to the largest term of the torque that counts as 0."""
+"""Negligible unevenness, relative to the largest term of the torque."""
 JUMP_TOLERANCE = 1e-6
-"""Jump of the torque across its mean, relative to the largest torque, that is refused."""
+"""Largest jump of the torque across its mean, relative to the largest torque."""
 ANGLE_BESIDE = 1e-9
-"""Crank angle beside a crossing of the mean, rad, that tests for a jump."""
+"""Distance from a crossing of the mean, rad, for the test of a jump."""
 SWITCH_RULES = {"switches": checks.Number("rad", table=True)}
 OPTIONAL = ("stiffness", "base_radius", "roller_radius", "shaft_radius")
 DEFAULT_PRESSURE_ANGLE, MAX_PRESSURE_ANGLE = np.radians(30.0), np.radians(85.0)
@@ -237,33 +237,33 @@ def torque_balancing_cam(
     label="_cam",
     switches=(),
 ):
-    """Cam on the crank with a spring-loaded roller follower that leaves the mean of the torque alone.
+    """Cam on the crank with a spring-loaded roller follower that makes the drive torque constant at its mean.
 
     Parameters
     ----------
     scene : Scene
-        Any machine, of one design at constant crank speed; its loads may switch, at any power that does not jump
+        Any machine, of one design at constant crank speed; its loads may switch, unless the torque jumps
         across the mean.
     mass : float
-        Of the follower with roller, and a third of the spring, kg.
+        Mass of the follower with roller, plus a third of the spring, kg.
     travel : float
-        Of the follower, m. A longer one needs a softer spring and less force.
+        Travel of the follower, m. A longer travel needs a softer spring and less force.
     stiffness : float, optional
-        N/m; by default the largest stretch of the spring is twice the least.
+        N/m; by default the spring's largest stretch is twice its least stretch.
     guide_angle, guide_offset : float
-        Of the follower's guide, from O outward; rad and m.
+        Direction of the follower's guide, from O outward, rad, and its offset, m.
     base_radius : float, optional
-        Least coordinate of the roller centre along the guide, m; by default the least within `pressure_angle`.
+        Least coordinate of the roller centre along the guide, m; by default the smallest that keeps `pressure_angle`.
     pressure_angle : float
-        Largest, rad; a limit where `base_radius` is given too.
+        Largest pressure angle, rad; with `base_radius` it is a limit.
     roller_radius : float, optional
-        m; refused where it would undercut the cam.
+        m; an error if the roller would undercut the cam.
     shaft_radius : float, optional
-        m. The least base radius keeps the cam off the shaft too; with a smaller one given the report warns.
+        m. The default base radius also keeps the cam off the shaft; with a smaller one the report warns.
     pin, label : str
-        Of the `RollerFollower`.
+        Names of the `RollerFollower`.
     switches : sequence of float
-        Crank angles at which a load switches, rad; a search finds the others.
+        Crank angles at which a load switches, rad; a search finds further ones.
 
     Returns
     -------
@@ -272,9 +272,9 @@ def torque_balancing_cam(
     Raises
     ------
     ParameterError
-        The torque is even as it is, jumps across its mean, or the scene has several designs or no constant speed; the
-        spring is too soft for contact or too stiff for the travel, with the bounds; the pressure angle or the roller
-        does not fit; friction at O, which the contact force would add to.
+        The torque is already even, jumps across its mean, or the scene has several designs or no constant speed. The
+        spring is too soft for contact or too stiff for the travel; the message gives the bounds. The pressure angle or
+        the roller does not fit. There is friction at O, which the contact force would increase.
 
     Examples
     --------
@@ -297,8 +297,8 @@ def torque_balancing_cam(
     least = swing / (stiffness * travel) - travel / 2.0
     if least <= 0.0:
         raise ParameterError(
-            f"{OWNER}: a spring of {stiffness:.6g} N/m takes up more than the {swing:.6g} J of the machine on a travel "
-            f"of {travel:.6g} m without any preload; take less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
+            f"{OWNER}: a spring of {stiffness:.6g} N/m stores more than the {swing:.6g} J of the machine on a travel "
+            f"of {travel:.6g} m without preload; choose less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
             f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
         )
     level = peak + 0.5 * stiffness * least * least
@@ -329,7 +329,7 @@ def torque_balancing_cam(
 
 
 def _parse_values(scene, given):
-    """Checked values by name; a scene that no such cam suits is refused."""
+    """Checked values by name; an error for a scene that this cam cannot balance."""
     problem = None
     if not isinstance(scene, Scene):
         problem = f"takes a Scene, as of a case's variant, got {checks.shown(scene)}"
@@ -339,11 +339,9 @@ def _parse_values(scene, given):
         problem = "the crank stands; give it its design speed"
     elif abs(scene.period - TURN) > 1e-9:
         turns = scene.period / TURN
-        problem = f"motion and loads must repeat after a turn, but do after {turns:.6g}: a cam cannot"
+        problem = f"motion and loads must repeat after a turn like the cam, but repeat after {turns:.6g}"
     elif "O" in scene.friction.acting:
-        problem = (
-            "friction at O grows with the force of the cam; leave it out, and look at it in the scene that is made"
-        )
+        problem = "friction at O grows with the force of the cam; leave it out, and add it to the resulting scene"
     given = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
     return checks.single_numbers(OWNER, problem, **{name: (value, *RULES[name]) for name, value in given.items()})
 
@@ -355,7 +353,7 @@ def _energy(scene, switches):
     size = solution.dynamics.largest_torque_term
     if not np.ptp(solution.balancing_torque) > UNEVENNESS_TOLERANCE * size:
         mean = np.mean(solution.balancing_torque)
-        raise ParameterError(f"{OWNER}: the torque is even as it is, {mean:.6g} N m all the way")
+        raise ParameterError(f"{OWNER}: the torque is already even, {mean:.6g} N m at all angles")
     kinks = Turn.of(solution).kinks
     try:
         torque = Panels.of(lambda angle: solution.at(angle).balancing_torque, TURN, [*kinks, *switches])
@@ -375,13 +373,13 @@ def _energy_swing(torque, energy):
         if np.max(beside) > JUMP_TOLERANCE * size:
             raise ParameterError(
                 f"{OWNER}: the torque jumps across its mean of {mean:.6g} N m at {np.degrees(angle):.6g} deg, where "
-                "the follower would have to turn back at once; let the load that switches there take some degrees"
+                "the follower would have to reverse at once; spread the switching of the load over some degrees"
             )
     return float(np.ptp(values)), float(np.max(values)), turns[values < np.roll(values, 1)].tolist()
 
 
 def _base_radius(stretch, least, values):
-    """Least coordinate of the roller centre; by default the least within the pressure angle and off the shaft."""
+    """Least coordinate of the roller centre; by default the smallest for pressure angle and shaft."""
     x, rate = stretch.at(turn_angles(stretch.edges, ANGLE_COUNT), 1)
     steep = np.tan(values["pressure_angle"])
     needed = float(np.max(np.abs(rate + values["guide_offset"]) / steep - (x - least)))
@@ -391,6 +389,6 @@ def _base_radius(stretch, least, values):
     if base < needed * (1.0 - 1e-9):
         raise ParameterError(
             f"{OWNER}: with a base radius of {base:.6g} m the pressure angle exceeds "
-            f"{np.degrees(values['pressure_angle']):.6g} deg; take at least {needed:.6g} m"
+            f"{np.degrees(values['pressure_angle']):.6g} deg; choose at least {needed:.6g} m"
         )
     return base

@@ -1,14 +1,14 @@
-"""Torque-free cams: the cam-balanced crank-slider whose energy stays constant over the turn.
+"""Torque-free cams: the cam-balanced crank-slider with constant energy over the turn.
 
 Constant crank speed needs no torque if kinetic energy and potential energy of weight and springs have a constant sum.
-The search varies harmonics of the cam, the coupler's length, and rate and free position of the spring, at fixed ends
-of the stroke: first the least squares of the torque (Gauss-Newton, from the cosine law's cam), then the goal under
-limits.
+The search varies harmonics of the cam, the coupler's length, and rate and free position of the spring, with fixed ends
+of the stroke. First it minimises the sum of squares of the torque (Gauss-Newton, from the cosine law's cam), then the
+goal under limits.
 
-Where weight acts along the guide, in an upright machine, symmetric cams become torque-free. Where it acts across the
-guide, the torque of half the coupler's weight is even in the crank angle from the guide, all other torque of a
-symmetric machine is odd, so no symmetric cam balances it. Sine terms, a torsion spring on the coupler, or
-a counterweight on the crank with an offset guide do; `weight_options` compares them.
+If weight acts along the guide, in an upright machine, symmetric cams become torque-free. If it acts across the guide,
+the torque of half the coupler's weight is even in the crank angle from the guide. All other torque of a symmetric
+machine is odd, so no symmetric cam balances it. Sine terms, a torsion spring on the coupler, or a counterweight on the
+crank with an offset guide do; `weight_options` compares them.
 """
 
 import warnings
@@ -30,13 +30,13 @@ from .result import Found
 
 TORQUE, POSITION = "balancing_torque", "slider_position"
 LEAST_SQUARES_PASSES = ((2.0, 1.0), (2e3, 0.0))
-"""Weights of each pass: of a miss of the stroke's ends by half the stroke, in mean torques, and of the cam's waves. The
-first pass approaches from far away, the second keeps the ends."""
+"""Weights of each pass, in mean torques: of the stroke's ends missed by half the stroke, and of the cam's waves. The
+first pass starts far away, the second keeps the ends."""
 MAX_LEAST_SQUARES_STEPS = 100
 
 
 def least_squares(problem, start, values):
-    """Design of least squares of torque and misses of the stroke's ends, by Gauss-Newton steps.
+    """Least-squares design for torque and errors of the stroke's ends, by Gauss-Newton steps.
 
     Only numbers of the cam, the coupler and the linear spring change.
     """
@@ -96,7 +96,7 @@ def waviness(name):
 MIN_ANGLES, ANGLES_PER_HARMONIC = 360, 32
 """Fewest crank angles, and crank angles per harmonic of the cam."""
 BOUND_MARGIN = 1.05
-"""Limit over the bound of symmetric cams that is refused at once; the bound changes a little with the cam."""
+"""Limit, relative to the bound of symmetric cams, above which the search is refused; the bound varies with the cam."""
 REPORTED_OUTPUTS = (
     "ratio mean_absolute balancing_torque",
     "mean_absolute balancing_torque",
@@ -142,47 +142,47 @@ def torque_free_cam(
     Parameters
     ----------
     source : Case, Scene or variant
-        A crank-slider, plain or with a cam; its masses, speed and loads stay, friction and crank acceleration are left
-        out with a `HintWarning`. Of a case the first variant besides the reference, unless told.
+        A crank-slider, plain or with a cam. Its masses, speed and loads are constant; friction and crank acceleration
+        are left out with a `HintWarning`. In a case, by default the first variant besides the reference.
     cosine, sine : int
         Harmonics of the cam.
     minimise, maximise : str, optional
         Output to minimise or maximise, as for `optimise`; default: minimise the mean magnitude of the torque.
-        "rms balancing_torque" is the least squares.
+        "rms balancing_torque" gives the least squares.
     limits : sequence of str
         As for `optimise`; "smallest cam_radius >= 40 mm" keeps the roller centre off the shaft.
     ends : (low, high), optional
-        Extreme positions of the slider, m; those of the source unless told.
+        Extreme positions of the slider, m; by default those of the source.
     gravity : bool
         Whether weight acts.
     guide_offset : float, optional
-        m; that of the source unless told.
+        m; by default that of the source.
     coupler_spring : float, optional
-        Free angle, rad, of a torsion spring between coupler and slider that carries the coupler's weight; its rate is
-        found. Its couple goes through the slider to the guide.
+        Free angle, rad, of a torsion spring between coupler and slider that carries the coupler's weight; the search
+        finds its rate. The slider and the guide take its couple.
     counterweight : float, optional
-        Mass on the crank, kg, whose place is found, and a guide offset with it.
+        Mass on the crank, kg; the search finds its place and a guide offset.
     cubic : (low, high), optional
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
-        Further numbers that vary, or other bounds.
+        Further varied numbers, or other bounds.
     shaft_radius : float, optional
-        m, of the shaft at O, for the report; that of the source's friction at O unless told.
+        Radius of the shaft at O for the report, m; by default that of the source's friction at O.
     robust, variant, reference, starts, seed, engine, progress
         As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
 
     Returns
     -------
     Found
-        Its report warns where the cam cuts into the shaft. Its `bound` is the greatest ratio of mean torques that a
-        symmetric cam reaches under weight.
+        Its report warns if the cam cuts into the shaft. Its `bound` is the largest ratio of mean torques of a
+        symmetric cam under weight.
 
     Raises
     ------
     DesignError
-        There is no such machine: a stroke the coupler cannot make, limits beyond what such cams can.
+        No machine meets the demands: the coupler cannot make the stroke, or the limits are beyond these cams.
     ParameterError
-        The source is no crank-slider, or a value no machine can have.
+        The source is not a crank-slider, or a value is impossible.
 
     Examples
     --------
@@ -218,7 +218,7 @@ def torque_free_cam(
     reported = (*task.outputs, *(parse_output(text, start.scene) for text in usual))
     try:
         found = best_design(problem, task, begins, reported, robust, progress)
-    except DesignError as error:  # with limited torque, what else balances weight
+    except DesignError as error:  # with limited torque, other ways to balance weight
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
         torque = any(isinstance(limit.output, Output) and limit.output.quantity == TORQUE for limit in task.limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
@@ -229,9 +229,9 @@ def torque_free_cam(
 
 
 def ratio_bound(start, scene, reference):
-    """Greatest ratio of mean torques of a symmetric cam, which leaves the torque of the coupler's weight.
+    """Largest ratio of mean torques of a symmetric cam, which leaves the torque of the coupler's weight.
 
-    That weight rises and falls twice a turn by the greatest height of A.
+    The weight rises and falls twice a turn by the largest height of A.
     """
     if reference is None or not start.weight:
         return np.inf
@@ -254,7 +254,7 @@ def _without_friction(scene, gravity):
     if left:
         text = (
             f"leaves out {' and '.join(left)} of {scene.mechanism.name}: it searches, and compares, at constant speed "
-            "without friction; look at them in the scene that is made"
+            "without friction; add them to the resulting scene"
         )
         warnings.warn(HintWarning("torque_free_cam", text), stacklevel=3)
     loads = tuple(item for item in scene.loads if gravity or not isinstance(item, Gravity))
@@ -262,7 +262,7 @@ def _without_friction(scene, gravity):
 
 
 def _require_possible(problem, start):
-    """Refuse a stroke that no coupler within the bounds can make."""
+    """Refuse a stroke that is impossible for couplers within the bounds."""
     place = problem.names.index("coupler_length")
     shortest, longest = problem.low[place], problem.high[place]
     low, high = start.ends
@@ -291,14 +291,14 @@ def _require_within_bound(start, problem, limits, reference, values):
 
 
 def _advice(start, problem, reference, values):
-    """Sentence naming what else balances weight where a symmetric cam cannot."""
+    """Sentence on other ways to balance weight if a symmetric cam cannot."""
     helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
     limit = ratio_bound(start, problem.scene(values), reference)
     if helped or not np.isfinite(limit):
         return ""
     return (
         f"; under weight a symmetric cam reaches a ratio of mean torques of about {limit:.3g} at most (that of the cam "
-        "nearest to the limits; it changes by some per cent with the cam): give sine terms, coupler_spring or "
+        "nearest to the limits; it varies by some per cent with the cam): give sine terms, coupler_spring or "
         "counterweight"
     )
 
@@ -308,28 +308,28 @@ QUARTER_TURN = np.pi / 2
 
 
 def weight_options(source, cosine=8, *, variant=None, reference=None, counterweight=None, **options):
-    """Torque-free cams under weight, a row for each way of carrying the weight.
+    """Torque-free cams under weight, a row for each way to carry the weight.
 
     Parameters
     ----------
     source, variant, reference, options
         As for `torque_free_cam`.
     cosine : int
-        Harmonics; as many sine terms where these are taken.
+        Number of cosine harmonics, and of sine terms if there are any.
     counterweight : float, optional
-        Mass on the crank, kg; that of the coupler unless told.
+        Mass on the crank, kg; by default that of the coupler.
 
     Returns
     -------
     pandas.DataFrame
-        "symmetric", "sine terms", "coupler spring" (its couple goes through the slider to the guide) and
-        "counterweight" (with sine terms; its centrifugal force goes to O), with the outputs of their reports; "bound"
-        is of the symmetric cam.
+        Rows "symmetric", "sine terms", "coupler spring" (the slider and the guide take its couple) and "counterweight"
+        (with sine terms; O takes its centrifugal force), with the outputs of their reports; "bound" is that of the
+        symmetric cam.
 
     Raises
     ------
     ParameterError
-        The source is neither a case nor a scene, or no crank-slider.
+        The source is neither a case nor a scene, or not a crank-slider.
     DesignError
         The machine has no masses.
 

@@ -21,10 +21,10 @@ SPEED_ROUNDING = 1e-14
 """Rounding of the speed, relative; the motor's slope turns it into rounding of the torque."""
 MAX_NEWTON_STEPS = 40
 MAX_STEPS_FROM_START = 12
-"""Newton steps of a motion from a start; a failure only halves the angle that is tried."""
+"""Newton steps of a motion from a start; after a failure the next attempt has half the angle."""
 EPSILON = float(np.finfo(float).eps)
 STEPS_BELOW_ZERO = 2
-"""Steps from a start after which an energy below 0 counts as a standstill."""
+"""Number of steps from a start after which an energy below 0 counts as a standstill."""
 ENERGY_TOLERANCE = 1e-14
 MAX_NEAR_CHANGE = 1e-2
 """Relative change of the energy in a step after which the derivatives are kept."""
@@ -53,7 +53,7 @@ class Linear(NamedTuple):
 
 
 def linearise(driven, pieces, energy, near=None) -> Linear:
-    """Torques of a machine with given energies at the points of pieces, linearised; `near` is that of near energies."""
+    """Torques of a machine with given energies at the points of pieces, linearised; `near` is that at near energies."""
     angle = pieces.angle
     inertia = driven.inertia(angle)
     speed = driven.direction * np.sqrt(2.0 * energy / inertia)
@@ -72,7 +72,7 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
     """Energy at the points near a guess, energy at the far end, and the `Linear`; None without convergence.
 
     `start` is the energy where the motion enters the pieces; without it running is periodic, and stable. `near` is the
-    `Linear` of near energies at the points. Raises `StandstillError` where a motion from a start stops.
+    `Linear` of near energies at the points. `StandstillError` if a motion from a start stops.
     """
     before = math.inf
     for step in range(MAX_NEWTON_STEPS if start is None else MAX_STEPS_FROM_START):
@@ -128,7 +128,7 @@ def _linear_solution(pieces, growth, rest, start, direction):
 
 
 def _chain(chain, step, start, exponent):
-    """Values before, between and after linear steps from `start`; None: whose product exp(exponent) closes them."""
+    """Values before, between and after linear steps from `start`; None: periodic, with the product exp(exponent)."""
     if start is None:
         start = reduce(step, chain, 0.0) / -math.expm1(exponent)
     return list(accumulate(chain, step, initial=start))
@@ -140,7 +140,7 @@ def resolve_energy(driven, pieces, found, kinks, again):
     Parameters
     ----------
     found : tuple
-        Of `solve_energy` on the pieces.
+        Result of `solve_energy` on the pieces.
     kinks : array
         Crank angles of kinks of friction among the edges, which move.
     again : function

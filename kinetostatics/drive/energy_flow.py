@@ -1,6 +1,6 @@
 """Energy of a turn: from the motor through its rotor to loads and joints, and the energy stored and returned.
 
-An induction motor takes torque times synchronous speed through the air gap and gives torque times its own speed at the
+An induction motor transfers torque times synchronous speed through the air gap and torque times shaft speed at the
 shaft; the difference heats the rotor. Loads take the rest, and friction of the joints loses it. Flywheel, links,
 weights and springs store energy and return all of it within the period.
 """
@@ -13,24 +13,25 @@ from ..errors import QuantityError
 from ..machine.friction import NO_FRICTION
 from ..mechanics.load_values import numbered_titles
 from ..numbers import checks
-from ..numbers.formatting import number
+from ..numbers.formatting import number, repr_with_units
 from ..numbers.parameter_tree import replace_unchecked
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
 SOURCE, LOSS, LOAD, JOINT, HELD = "source", "loss", "load", "joint", "held"
 ENERGY_TOLERANCE = 1e-13
-"""Energy relative to the energy exchanged that counts as 0."""
+"""Negligible energy, relative to the energy exchanged."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """A part that gives, takes or stores energy.
+    """A part that supplies, takes or stores energy.
 
     Attributes
     ----------
     name : str
     kind : str
-        "source": gives `energy`; "loss", "load" and "joint": take it, negative if they give; "held": stores energy.
+        "source" supplies `energy`; "loss", "load" and "joint" take it (negative if they supply it); "held" stores
+        energy.
     energy : float
         In a turn, J.
     swing : float
@@ -42,10 +43,12 @@ class Part:
     energy: float
     swing: float = np.nan
 
+    __repr__ = repr_with_units(energy="J", swing="J")
+
 
 @dataclass(frozen=True)
 class EnergyFlow:
-    """Where the energy of a turn goes; made by `Running.energy_flow`.
+    """Energy balance of a turn by part; `Running.energy_flow` returns it.
 
     Attributes
     ----------
@@ -81,13 +84,13 @@ class EnergyFlow:
         noise = ENERGY_TOLERANCE * np.nanmax([0.0, *(max(abs(part.energy), part.swing) for part in self.parts)])
         lines = [f"<EnergyFlow: energy in a turn of {self.turn_time:.6g} s"]
         for part in self.parts:
-            held = f", {number(part.swing, bound=noise)} J held and returned" if part.swing == part.swing else ""
+            held = f", {number(part.swing, bound=noise)} J stored and returned" if part.swing == part.swing else ""
             lines.append(f"  {part.name:<{wide}}  {part.kind:<6}  {number(part.energy):>11} J{held}")
         return "\n".join(lines) + ">"
 
     @property
     def residual(self):
-        """Imbalance: energy of the source that no part takes, relative to all energies of the turn."""
+        """Imbalance: energy of the source less that of all other parts, relative to all energies of the turn."""
         given = sum(part.energy for part in self.parts if part.kind == SOURCE)
         taken = sum(part.energy for part in self.parts if part.kind != SOURCE)
         size = sum(abs(part.energy) for part in self.parts)
@@ -95,7 +98,7 @@ class EnergyFlow:
         return abs(given - taken) / size if size else 0.0
 
     def frame(self):
-        """Table with a row for each part, a pandas DataFrame: energy in a turn, mean power, share, energy held."""
+        """Table with a row for each part, a pandas DataFrame: energy in a turn, mean power, share, stored energy."""
         import pandas as pd
 
         table = pd.DataFrame(self.parts).set_index("name").rename_axis("part")

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..cycle.load_functions import resolution_note
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from .one_dof import DrivenMachine
 from .resolution import resolve_and_hint
 from .running import Running, find_flywheel, parse_fluctuation
@@ -16,21 +17,21 @@ from .steady_running import steady
 
 @dataclass(frozen=True, eq=False)
 class Flywheel:
-    """Size of a flywheel on the crank; made by `flywheel`.
+    """Size of a flywheel on the crank; `flywheel` returns it.
 
     Attributes
     ----------
     inertia : float
-        Moment of inertia on the crank besides links and motor, kg m2; 0 where none is needed.
+        Moment of inertia on the crank besides links and motor, kg m2; 0 if none is needed.
     energy : float
-        Fluctuation of energy over the turn, J: between the extremes of the turning-moment diagram without motor, of the
-        flywheel itself with one.
+        Fluctuation of energy over the turn, J. Without motor: between the extremes of the turning-moment diagram. With
+        a motor: of the flywheel itself.
     fluctuation : float
-        Coefficient of fluctuation reached.
+        Resulting coefficient of fluctuation.
     running : Running or None
-        Periodic running with it, where a motor is given.
+        Periodic running with the flywheel; None without motor.
     note : str
-        Resolution of load functions without `kinks`; empty where there are none.
+        Resolution of load functions without `kinks`; empty if there are none.
 
     Examples
     --------
@@ -45,22 +46,24 @@ class Flywheel:
     energy: float
     fluctuation: float
     running: Running | None = field(default=None, repr=False)
-    note: str = ""
+    note: str = field(default="", repr=False)
+
+    __repr__ = repr_with_units(inertia="kg m2", energy="J")
 
 
 def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     """Flywheel for a coefficient of fluctuation of the crank speed.
 
-    Without motor as in textbooks (Khurmi and Gupta, *Theory of Machines*, chapter 16; Uicker, Pennock and Shigley,
-    *Theory of Machines and Mechanisms*, on flywheels): the torque is that at constant speed, the motor gives its mean,
-    and the energy E between the extremes of the excess energy gives J = E / (fluctuation * speed^2), with fluctuation
-    by the mean of largest and smallest speed. With a motor exact: periodic running (`steady`) whose `fluctuation`, by
-    the mean over time, is the one given.
+    Without motor it follows the textbooks (Khurmi and Gupta, *Theory of Machines*, chapter 16; Uicker, Pennock and
+    Shigley, *Theory of Machines and Mechanisms*, on flywheels). The torque is that at constant speed, and the motor
+    gives its mean. The energy E between the extremes of the excess energy gives J = E / (fluctuation * speed^2), with
+    the fluctuation over the mean of largest and smallest speed. With a motor the result is exact: periodic running
+    (`steady`) has the wanted `fluctuation`, over the mean speed in time.
 
     Parameters
     ----------
     scene : Scene
-        Mechanism and loads, and the crank speed where there is no motor.
+        Mechanism and loads; without motor also the crank speed.
     fluctuation : float
         (largest - smallest) / mean speed, between 0 and 2.
     motor : Motor, optional

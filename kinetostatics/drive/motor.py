@@ -1,4 +1,4 @@
-"""Motors: torque over speed at their own shaft, and reduced to the crank."""
+"""Motors: torque over speed at the motor's shaft, and reduced to the crank."""
 
 import math
 from dataclasses import dataclass, field
@@ -8,6 +8,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property
 
 MAX_SPEED_RATIO = 2.0
@@ -16,7 +17,7 @@ MAX_SPEED_RATIO = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Motor:
-    """A motor that turns the crank through a transmission; made by `kloss`, `linear`, `constant` or `table`.
+    """A motor that turns the crank through a transmission; from `kloss`, `linear`, `constant` or `table`.
 
     Attributes
     ----------
@@ -24,7 +25,7 @@ class Motor:
         Motor speed over crank speed; negative where they turn against each other. Counter-clockwise is positive for
         the crank; the motor drives toward its own positive speeds.
     inertia : float
-        Moment of inertia of the rotor and all that turns with it, kg m2.
+        Moment of inertia of the rotor and all parts that turn with it, kg m2.
 
     Examples
     --------
@@ -41,16 +42,16 @@ class Motor:
     def kloss(power, speed, *, synchronous_speed, overload, transmission=1.0, inertia=0.0) -> "Motor":
         """Induction motor by Kloss's formula.
 
-        T = 2 Tk s sk / (s^2 + sk^2) with the slip s = 1 - speed / synchronous speed: smooth through s = 0, beyond which
-        it regenerates. Tk = overload * power / speed, sk = sn (overload + sqrt(overload^2 - 1)); stator resistance is
-        left out (M. Kloss, *Drehmoment und Schlüpfung des Drehstrommotors*, 1916).
+        T = 2 Tk s sk / (s^2 + sk^2) with the slip s = 1 - speed / synchronous speed: smooth through s = 0; beyond s = 0
+        the motor regenerates. Tk = overload * power / speed, sk = sn (overload + sqrt(overload^2 - 1)); stator
+        resistance is left out (M. Kloss, *Drehmoment und Schlüpfung des Drehstrommotors*, 1916).
 
         Parameters
         ----------
         power : float
-            Rated, at the shaft, W.
+            Rated power at the shaft, W.
         speed : float
-            Rated, rad/s at the motor's shaft.
+            Rated speed of the motor's shaft, rad/s.
         synchronous_speed : float
             rad/s.
         overload : float
@@ -58,12 +59,12 @@ class Motor:
         transmission : float
             Motor speed over crank speed, not 0; negative where they turn against each other.
         inertia : float
-            Of the rotor, at its own shaft, kg m2.
+            Moment of inertia of the rotor, at its own shaft, kg m2.
 
         Raises
         ------
         ParameterError
-            A value that no motor can have; all of them at once.
+            A value is impossible; the message lists all such values.
 
         Examples
         --------
@@ -95,9 +96,9 @@ class Motor:
         Parameters
         ----------
         torque : float
-            At standstill, N m at the motor's shaft.
+            Torque of the motor's shaft at standstill, N m.
         speed : float
-            At which there is no torque left, rad/s; beyond, the motor brakes.
+            Idle speed, rad/s, at which the torque is 0; beyond it the motor brakes.
         transmission, inertia
             As for `kloss`.
 
@@ -117,7 +118,7 @@ class Motor:
 
     @staticmethod
     def constant(torque, *, transmission=1.0, inertia=0.0) -> "Motor":
-        """Motor of one `torque`, N m at its shaft: not 0, negative brakes; `transmission`, `inertia` as for `kloss`.
+        """Motor of constant `torque`, N m at its shaft, not 0 (negative: brake); other arguments as for `kloss`.
 
         Examples
         --------
@@ -139,10 +140,9 @@ class Motor:
         Parameters
         ----------
         speed : array (N,)
-            Rising, rad/s at the motor's shaft; two rows at least. Outside them the motor is not known: running there
-            is refused.
+            Speeds of the motor's shaft, rad/s, rising; at least two rows. Running outside these speeds raises an error.
         torque : array (N,)
-            N m at the motor's shaft.
+            Torque of the motor's shaft, N m.
         transmission, inertia
             As for `kloss`.
 
@@ -168,7 +168,7 @@ class Motor:
 
     @property
     def field_speed(self) -> float | None:
-        """Speed of the field, rad/s; None of a motor without slip."""
+        """Speed of the field, rad/s; None for a motor without slip."""
         return None
 
     @property
@@ -214,6 +214,8 @@ class Kloss(Motor):
     synchronous_speed: float
     overload: float
 
+    __repr__ = repr_with_units(power="W", speed="rad/s", synchronous_speed="rad/s", transmission="1", inertia="kg m2")
+
     @cached_property
     def breakdown_torque(self):
         return self.overload * self.power / self.speed
@@ -251,6 +253,8 @@ class Linear(Motor):
     standstill_torque: float
     idle_speed: float
 
+    __repr__ = repr_with_units(standstill_torque="N m", idle_speed="rad/s", inertia="kg m2")
+
     def torque(self, speed):
         return self.standstill_torque * (1.0 - speed / self.idle_speed)
 
@@ -264,10 +268,12 @@ class Linear(Motor):
 
 @dataclass(frozen=True, eq=False)
 class TableMotor(Motor):
-    """Motor by a table; see `Motor.table`. Straight lines continue the curve, so that iterations can return."""
+    """Motor by a table; see `Motor.table`. Straight lines extend the curve for iterations outside the table."""
 
     speeds: np.ndarray
     torques: np.ndarray
+
+    __repr__ = repr_with_units(speeds="rad/s", torques="N m", inertia="kg m2")
 
     def torque(self, speed):
         inside = np.clip(speed, *self.limits)
@@ -310,7 +316,7 @@ def _row_problems(speed, torque):
     if wrong:
         return [f"{name} must be a row of numbers" for name in wrong]
     if speed.size != torque.size or speed.size < 2:
-        return [f"speed and torque must be of one length, 2 at least, got {speed.size} and {torque.size}"]
+        return [f"speed and torque must have the same length, at least 2, got {speed.size} and {torque.size}"]
     if np.any(np.diff(speed) <= 0):
         row = int(np.argmax(np.diff(speed) <= 0)) + 1
         return [f"speeds must rise, but {speed[row]:.9g} follows {speed[row - 1]:.9g} rad/s"]

@@ -43,9 +43,9 @@ RELATIVE_SPEED_STEP = 1e-6
 MAX_SECANT_STEPS = 30
 """Secant steps for the acceleration; three or four suffice unless friction nearly jams."""
 FRICTION_TOLERANCE = 2e-16
-"""Change of the friction torque, relative to all torques, at which the secant rule ends."""
+"""Change of the friction torque, relative to all torques, below which the secant rule ends."""
 TORQUE_TOLERANCE = 1e-14
-"""Unbalanced torque, relative to all torques, at which it ends where friction does not depend on the acceleration."""
+"""Unbalanced torque, relative to all torques, below which it ends if friction does not depend on acceleration."""
 MIN_FRICTION_CHANGE = 1e-9
 """Change of the friction torque, relative to all torques, above which a secant is meaningful."""
 MAX_DOUBLINGS = 50
@@ -53,11 +53,11 @@ MAX_DOUBLINGS = 50
 BRACKET_TOLERANCE = 1e-16
 """Error of an acceleration relative to its bracket."""
 ANGLE_AHEAD = 1e-9
-"""Crank angle, rad, ahead of a crank at rest where the senses of motion are read."""
+"""Crank angle, rad, ahead of a crank at rest at which the senses of motion are evaluated."""
 FORCE_ROUNDING = 1e-9
 """Force of a joint, relative to the largest of those that friction depends on, below which its sign is rounding."""
 BLOCK_SIZE = 4096
-"""Crank angles of one call of the friction program."""
+"""Number of crank angles in one call of the friction program."""
 
 
 class State(NamedTuple):
@@ -70,10 +70,10 @@ class State(NamedTuple):
 
 
 class DrivenMachine:
-    """A scene as one degree of freedom; `flywheel` is all inertia on the crank besides the links.
+    """A scene as one degree of freedom; `flywheel` is the inertia on the crank without the links.
 
-    The scene's crank speed does not count. `direction`, +1 or -1, is the sense of rotation, that of the motor by
-    default; `along` returns the machine that turns the other way.
+    The scene's crank speed has no effect. `direction`, +1 or -1, is the sense of rotation, by default that of the
+    motor; `along` returns the machine that turns the other way.
     """
 
     def __init__(self, owner, scene, motor, flywheel, engine=None, direction=None):
@@ -92,7 +92,7 @@ class DrivenMachine:
         self.flywheel = flywheel + (motor.inertia_at_crank if motor is not None else 0.0)
         self.scene = replace_unchecked(scene, crank_speed=self.direction, crank_acceleration=0.0, sense=self.direction)
         *designs, _ = self.scene.unsolved(np.zeros(1)).shape
-        checks.require(owner, f"takes one design at a time, but the scene has shape {(*designs,)}" if designs else None)
+        checks.require(owner, f"works on one design at a time, got a scene of shape {(*designs,)}" if designs else None)
         self.period = self.scene.period
         free = replace_unchecked(self.scene, friction=NO_FRICTION)
         self.program = compiled(free, QUANTITIES, parameters=("crank_speed", "sense"), engine=engine or "numpy")
@@ -104,7 +104,7 @@ class DrivenMachine:
             checks.require(
                 owner,
                 "a load is a function that depends on the crank acceleration, which follows from the loads; let it "
-                "depend on angle, position and velocity alone",
+                "depend only on angle, position and velocity",
             )
         self._slip: Any = SlipDirections.of(self.scene) if self.scene.friction.acting else None
         if self._slip is not None:
@@ -132,7 +132,7 @@ class DrivenMachine:
 
     @property
     def smooth_by_speed(self):
-        """Whether the torque depends on the speed, smoothly: by friction alone."""
+        """Whether the torque depends on the speed, but only smoothly, by friction."""
         return self._slip is not None and not self.loads_by_speed
 
     @cached_property
@@ -144,7 +144,7 @@ class DrivenMachine:
 
     @cached_property
     def _function_loads(self):
-        """Load functions, each with the inputs of the crank's drive that it reads somewhere in the period."""
+        """Load functions, each with the inputs of the crank's drive that it uses in the period."""
         if all(map(has_no_user_code, self.scene.loads)):
             return []
         motion = self.scene.unsolved(np.linspace(0.0, self.period, LOAD_PROBE_ANGLES, endpoint=False))
@@ -160,7 +160,7 @@ class DrivenMachine:
         return self._kinks_at(self.direction)
 
     def locate_kinks(self, speed):
-        """Locate the kinks of loads at a crank speed, rad/s; `kinks` returns them from then on.
+        """Locate the kinks of loads at a crank speed, rad/s; afterwards `kinks` returns them.
 
         `functions` are samples of the load functions without `kinks` there.
         """
@@ -168,7 +168,7 @@ class DrivenMachine:
             self.kinks = self._kinks_at(speed)
 
     def require_fixed_kinks(self):
-        """Refuse loads that declare kinks which move with the crank speed: a motion cannot tell where they are."""
+        """Refuse loads whose declared kinks move with the crank speed: a motion cannot locate them."""
         if not self.loads_by_speed:
             return
         slow, fast = (
@@ -178,7 +178,7 @@ class DrivenMachine:
         if slow.size != fast.size or np.any(np.abs(slow - fast) > ANGLE_TOLERANCE):
             raise DriveError(
                 f"{self.scene.mechanism.name}: a load declares `kinks` that move with the crank speed, so a motion "
-                "cannot tell where they are; leave `kinks` out, and the function is sampled, or let them depend on the "
+                "cannot locate them; leave `kinks` out to have the function sampled, or let them depend on the "
                 "crank angle alone"
             )
 
@@ -195,7 +195,7 @@ class DrivenMachine:
         return _distinct_angles(np.concatenate(angles), self.period)
 
     def at(self, angle, speed=None, near=None) -> State:
-        """State at crank angles; `speed` counts where loads or friction depend on it.
+        """State at crank angles; `speed` matters if loads or friction depend on it.
 
         `near` are the acceleration and the slope of `motion_with_friction` at nearly this speed: with them friction is
         linear in the acceleration.
@@ -224,7 +224,7 @@ class DrivenMachine:
     def without_friction(self, angle, speed=None) -> State:
         """State without friction; the last one is cached where loads do not depend on the speed.
 
-        Raises the error of `solve` at these crank angles where the state is not finite.
+        Raises the error of `solve` at the crank angles where the state is not finite.
         """
         cached = self._cached_state
         if cached and cached[0] is angle and not self.loads_by_speed:
@@ -348,7 +348,7 @@ class DrivenMachine:
     def _friction_pairs(self):
         """Force, couple and half length of joints whose friction has a kink where these vanish or are equal.
 
-        A couple that is no quantity, as of a cam's block, is left out: pieces are halved at its kinks.
+        A couple that is not a quantity, such as a cam block's, is left out: pieces are halved at its kinks.
         """
         mechanism, acting = self.scene.mechanism, self.scene.friction.acting
         pairs = {name: mechanism.pairs[name] for name in acting}
@@ -502,6 +502,6 @@ def _load_problems(scene):
         value = value_of(item)
         if np.ndim(value) and not callable(value) and np.shape(value)[-1] > 1:
             yield (
-                f"{type(item).__name__} is a table over the crank angles given, unknown between them; use a constant, "
-                "a table by crank angle or a function of the motion"
+                f"{type(item).__name__} is a table over the given crank angles, without values between them; use a "
+                "constant, a table by crank angle or a function of the motion"
             )

@@ -20,24 +20,24 @@ MAX_WIDTH = TURN / 6
 MAX_ROUNDS = 8
 """Rounds of locating kinks of friction."""
 KINK_TOLERANCE = 1e-8
-"""Shift of an edge, relative to the period, that is harmless: its square is rounding."""
+"""Negligible shift of an edge, relative to the period: its square is rounding."""
 MIN_EDGE_DISTANCE = 1e-6
 """Distance of edges from a new one, relative to the period, below which they are removed."""
 MIN_RESOLVED_WIDTH = 1e-6
 """Width of a piece, relative to the period, below which a torque may be without bound."""
 MAX_UNRESOLVED = 1e-6
-"""Share of a torque in unresolved pieces above which running is refused."""
+"""Largest share of a torque in unresolved pieces."""
 MIN_INERTIA_RATIO = 1e-10
-"""Smallest inertia, relative to the largest, with which there is a speed."""
+"""Smallest inertia, relative to the largest, at which a speed exists."""
 MIN_PAST, MAX_PAST = 3, 4
-"""Periods by which the next ones are predicted."""
+"""Number of periods that predict the next ones."""
 MAX_PERIODS = 8
-"""Periods that are solved together."""
+"""Number of periods solved together."""
 MAX_PREDICTED_CHANGE = 0.1
 """Relative change of the energy over these."""
 MAX_PREDICTED_PIECES = 2000
 MAX_ADDED_EDGES = 6
-"""Edges besides those of the first period above which a period begins with the first ones again."""
+"""Largest number of edges besides those of the first period; with more a period begins with the first edges again."""
 NO_ANGLES = np.empty(0)
 
 
@@ -88,7 +88,7 @@ def resolved(driven, speed):
 
 
 def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
-    """Pieces split where rows change their signs, and these crank angles; None where all of them are edges already.
+    """Pieces split where rows change their signs, and these crank angles; None if all of them are edges already.
 
     `rows` are functions given at the points; edges at the angles `before`, found earlier, are removed.
     """
@@ -97,7 +97,7 @@ def split_at_kinks(driven, pieces, rows, before=NO_ANGLES):
     period, (first, last) = driven.period, pieces.edges[[0, -1]]
     angle = np.column_stack([pieces.edges[:-1], pieces.angle, pieces.edges[1:]]).ravel()
     zeros = []
-    for value in (pieces.with_ends(row).ravel() for row in rows):  # at an edge its value is there twice
+    for value in (pieces.with_ends(row).ravel() for row in rows):  # at an edge the value appears twice
         at = np.flatnonzero((np.signbit(value[:-1]) != np.signbit(value[1:])) & (value[:-1] != value[1:]))
         found = angle[at] + (angle[at + 1] - angle[at]) * value[at] / (value[at] - value[at + 1])
         zeros.append(found[np.diff(found, prepend=-np.inf) > MIN_EDGE_DISTANCE * min(last - first, period)])
@@ -136,7 +136,7 @@ def _require_resolved(driven, pieces, torque):
         raise DriveError(
             f"{driven.scene.mechanism.name}: the torque of the loads cannot be resolved near crank angle "
             f"{math.degrees(angle):.6g} deg, where it reaches {np.abs(torque[worst]).max():.3g} N m: it grows without "
-            "bound there, or changes too wildly; give loads that stay finite",
+            "bound there, or changes too fast; give loads that stay finite",
             crank_angle=angle,
         )
 
@@ -218,7 +218,7 @@ class PastPeriods:
 
 
 def weights_ahead(count, number):
-    """Weights of `count` even values, in rows, in those at places so many numbers further, by a polynomial."""
+    """Weights of `count` even values, in rows, in the extrapolation by `number` places, by a polynomial."""
     places = np.arange(1.0 - count, 1.0)
     others = (places[places != own] for own in places)
     rows = [

@@ -21,6 +21,7 @@ from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
+from ..numbers.output_units import output_units
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import Scene
@@ -336,8 +337,11 @@ class Running:
         torques.legend(lines, [str(line.get_label()) for line in lines], frameon=False, fontsize="small")
         return ax, torques
 
-    def frame(self):
-        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive."""
+    def frame(self, units=None):
+        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
         columns = {
@@ -352,7 +356,8 @@ class Running:
             **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
             "kinetic_energy [J]": self.kinetic_energy,
         }
-        return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        table = pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        return output_units(units, "frame").table(table)
 
     @property
     def quantities(self):

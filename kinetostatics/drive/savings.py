@@ -10,6 +10,7 @@ import numpy as np
 
 from ..cycle.comparison import Comparison
 from ..numbers import checks
+from ..numbers.output_units import output_units
 from .energy_flow import HELD, ROTOR
 
 DRIVE_FIGURES = {
@@ -36,7 +37,7 @@ def _of_drives(name, text):
 
 @dataclass(frozen=True, eq=False)
 class DrivenComparison(Comparison):
-    """Dynamic coefficients of two machines in periodic running and figures of their drives; made by `compare`.
+    """Dynamic coefficients of two machines in periodic running and figures of their drives; `compare` returns them.
 
     Examples
     --------
@@ -51,7 +52,7 @@ class DrivenComparison(Comparison):
     """
 
     def of_drives(self, name):
-        """A figure of both machines' `Running` by its name, as "rotor_loss_per_turn"; NaN where there is none."""
+        """A figure of both machines' `Running` by its name, as "rotor_loss_per_turn"; NaN if there is none."""
         runs = self.reference.running, self.balanced.running
         return tuple(np.nan if name in AIR_GAP_FIGURES and not run.has_air_gap else getattr(run, name) for run in runs)
 
@@ -86,12 +87,12 @@ class DrivenComparison(Comparison):
         )
 
     def flywheel_mass_saved(self, radius, fluctuation=None):
-        """Mass of a rim that the balanced machine's flywheel saves for the same fluctuation, kg; negative if none.
+        """Rim mass that the balanced machine saves for the same fluctuation, kg; negative if it needs more.
 
         Parameters
         ----------
         radius : float
-            Of the rim, m.
+            Radius of the rim, m.
         fluctuation : float, optional
             As for `flywheels`.
         """
@@ -113,11 +114,15 @@ class DrivenComparison(Comparison):
         columns = ["quantity", "unit", *self.names, "ratio", "saved"]
         return pd.DataFrame(rows, columns=columns).set_index("quantity").dropna(how="all", subset=list(self.names))
 
-    def frame(self):
-        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms."""
+    def frame(self, units=None):
+        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
-        return pd.concat([super().frame(), self.drive_frame().drop(columns="saved")])
+        of_drives = output_units(units, "frame").table(self.drive_frame().drop(columns="saved"))
+        return pd.concat([super().frame(units), of_drives])
 
 
 def _ratio(reference, balanced):
@@ -125,7 +130,7 @@ def _ratio(reference, balanced):
 
 
 MAX_SPEED_RATIO = 1.5
-"""Ratio of running speed and scene speed beyond which a hint is due."""
+"""Ratio of running speed and scene speed beyond which a hint follows."""
 
 
 def running_table(runs, starts):
@@ -153,13 +158,13 @@ def speed_hint(run, scene):
     if meant == 0.0 or meant / MAX_SPEED_RATIO <= mean <= meant * MAX_SPEED_RATIO:
         return None
     return (
-        f"the motor turns the crank at {mean:.6g} rad/s, but the crank speed given is {meant:.6g} rad/s: is the "
+        f"the motor turns the crank at {mean:.6g} rad/s, but the given crank speed is {meant:.6g} rad/s: is the "
         f"transmission of the motor, {run.motor.transmission:.6g}, right?"
     )
 
 
 def _table(columns):
-    """One table of columns {(title, unit): value}; NaN where a column lacks a row."""
+    """Table of columns {(title, unit): value}; NaN where a column lacks a row."""
     import pandas as pd
 
     rows = {row: None for column in columns.values() for row in column}

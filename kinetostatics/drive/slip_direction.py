@@ -25,9 +25,9 @@ class SlipDirections:
     edges : dict of joint to array
         Crank angles in [0, period) at which the sign changes, rising.
     signs : dict of joint to array
-        Signs before the first of these, between each two, and after the last.
+        Signs before the first edge, between neighbouring edges, and after the last one.
     rates : function
-        From crank angles to the rates, by the crank angle, of the joints in `edges` that do not roll, in order.
+        From crank angles to the rates, by the crank angle, of the non-rolling joints in `edges`, in order.
     """
 
     period: float
@@ -72,7 +72,7 @@ class SlipDirections:
     def at(self, angle, direction):
         """Signs of the motion at crank angles, the crank turning forward (+1) or backward (-1).
 
-        By the parameter names of a scene's program: "sense" of the crank, "friction.JOINT.sense".
+        Keys are the parameter names of a scene's program: "sense" of the crank, "friction.JOINT.sense".
         """
         inside = np.mod(angle, self.period)
         found = {

@@ -1,8 +1,8 @@
 """Periodic running of a machine under its motor, or under a constant torque, exact to rounding.
 
-`energy_equation` solves for the energy over the crank angle. The start is the operating speed, at which the mean
-torques of motor and loads agree; where Newton's method does not converge from there, a motion from a high speed gives
-the start.
+`energy_equation` solves for the energy over the crank angle. The initial guess is the operating speed, at which the
+mean torques of motor and loads are equal. If Newton's method does not converge from there, a motion from a high speed
+gives the guess.
 """
 
 import math
@@ -51,10 +51,10 @@ MAX_TURNS = 100
 
 
 def settle_from_above(driven, pieces, start):
-    """Pieces and `solve_energy` of periodic running, from a motion at high speed where Newton's method alone fails.
+    """Pieces and `solve_energy` of periodic running, from a motion at high speed, where Newton's method fails.
 
-    Motions of one degree of freedom do not cross, so a motion from above reaches the fastest periodic running, or
-    there is none.
+    Motions of one degree of freedom do not cross. So a motion from above reaches the fastest periodic running, or no
+    periodic running exists.
     """
     direction, turns, inertia = driven.direction, 0, driven.inertia(pieces.angle)
     growth = linearise(driven, pieces, 0.5 * inertia * start * start).growth
@@ -65,7 +65,7 @@ def settle_from_above(driven, pieces, start):
         if not march.turn(direction):
             missing = abs(driven.torque_at_rest(march.inside)[0])
             raise DriveError(
-                f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: followed from "
+                f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: from "
                 f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "
                 f"{math.degrees(march.inside):.6g} deg in turn {turns}, where {missing:.6g} N m are missing at the "
                 "crank; give a larger flywheel or a stronger motor",
@@ -85,15 +85,15 @@ def settle_from_above(driven, pieces, start):
 
 
 def _remedy(share, inertia):
-    """Remedy to name where no running converges, by how much the torque depends on the speed."""
+    """Remedy for runs without convergence, according to the dependence of the torque on the speed."""
     if share < MIN_GROWTH:
         return (
-            f"motor and loads hold the speed by {share:.1e} of the energy of motion a turn only, against an inertia of "
-            f"{inertia:.6g} kg m2 at the crank; give a stronger motor, or less inertia"
+            f"motor and loads stabilise the speed by only {share:.1e} of the kinetic energy per turn, for an inertia "
+            f"of {inertia:.6g} kg m2 at the crank; give a stronger motor, or less inertia"
         )
     if share > MAX_GROWTH:
         return (
-            f"the motor is so rigid that its torque changes by {share:.1e} times the energy of motion, a turn, with "
+            f"the motor is so rigid that its torque changes by {share:.1e} times the kinetic energy per turn with "
             "the speed; give it its true slip, or a larger flywheel"
         )
     return "give a larger flywheel"
@@ -104,7 +104,7 @@ MEAN_LOAD_ANGLES = 96
 SPEED_COUNT = 512
 """Speeds of the search for the operating speed."""
 FRICTION_SPEED_COUNT = 16
-"""Speeds with computed mean friction torque; the search interpolates between them at first."""
+"""Speeds with computed mean friction torque; the search first interpolates between them."""
 
 
 def operating_speed(driven):
@@ -117,8 +117,9 @@ def operating_speed(driven):
     else:
         mean = float(_mean_load(driven, np.ones(1))[0])
         raise DriveError(
-            f"{name}: nothing holds the speed, as neither the motor's torque nor the loads depend on it; a turn leaves "
-            f"{TURN * (motor.torque_at_crank(0.0) - mean):.6g} J over; give a motor whose torque falls with speed"
+            f"{name}: nothing stabilises the speed, as neither the motor's torque nor the loads depend on it; a turn "
+            f"leaves {TURN * (motor.torque_at_crank(0.0) - mean):.6g} J over; give a motor whose torque falls with "
+            "speed"
         )
     load, spare, ends = _spare_torque(driven, speed, interpolate=driven.smooth_by_speed)
     if driven.smooth_by_speed:  # the interpolated load may place the interval wrongly
@@ -136,8 +137,8 @@ def operating_speed(driven):
         return float(brentq(spare_at, *ends, xtol=1e-9 * ends[1], rtol=1e-9)) / motor.transmission
     if spare[-1] > 0.0:
         raise DriveError(
-            f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest speed of the motor that is looked "
-            f"at, {spare[-1]:.6g} N m are left over at its shaft; give more load, a motor that brakes beyond its speed"
+            f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest motor speed of the search, "
+            f"{spare[-1]:.6g} N m are left over at its shaft; give more load, a motor that brakes beyond its speed"
             f"{', more rows to its table' * math.isfinite(motor.limits[1])}, or another transmission"
         )
     best = int(np.argmax(spare))
@@ -156,9 +157,9 @@ def operating_speed(driven):
 
 
 def _spare_torque(driven, speed, interpolate=False):
-    """Mean load torque at motor speeds, motor torque less it, and the highest interval where that turns negative.
+    """Mean load torque at motor speeds, spare motor torque, and the highest interval in which that becomes negative.
 
-    To `interpolate` is to compute the load at a few speeds only, and linearly over the squared speed between them.
+    `interpolate`: the load is computed at a few speeds and interpolated linearly over the squared speed.
     """
     motor = driven.motor
     crank_speed = speed / motor.transmission
@@ -180,7 +181,7 @@ def require_within_motor_table(driven, speed):
     if own.min() < low or own.max() > high:
         raise DriveError(
             f"{driven.scene.mechanism.name}: the motor runs at {own.min():.6g} to {own.max():.6g} rad/s, but its table "
-            f"knows {low:.6g} to {high:.6g} rad/s only; give more rows"
+            f"covers only {low:.6g} to {high:.6g} rad/s; give more rows"
         )
 
 
@@ -196,28 +197,28 @@ def _mean_load(driven, speed):
 MAX_FRICTION_UPDATES = 60
 """Updates of friction under a constant torque."""
 SPEED_TOLERANCE = 2e-15
-"""Relative change of speed at which these updates end."""
+"""Relative change of speed below which these updates end."""
 
 
 def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     """Periodic running of a machine under its motor, exact to rounding.
 
-    Where there are several, the stable one, at the highest speed; a motor below its breakdown torque does not count.
-    It is followed over one turn, or as many as motion and loads take to repeat.
+    If several exist, it is the stable one at the highest speed; running below the motor's breakdown torque does not
+    count. The result covers one period: one turn, or the number of turns after which motion and loads repeat.
 
     Parameters
     ----------
     scene : Scene
-        Mechanism and loads; its crank speed does not matter, but for `motor` None.
+        Mechanism and loads; its crank speed matters only with `motor` None.
     motor : Motor or None
-        None: a motor that gives the constant torque that the machine takes at the mean speed of the scene, as textbooks
-        assume; loads must not depend on the speed then.
+        None: a motor whose constant torque keeps the scene's mean speed, as in textbooks. The loads must then not
+        depend on the speed.
     flywheel : float
         Moment of inertia on the crank besides its own link, kg m2.
     angles : int or array
-        Crank angles of the tables: their number over the period, its end excluded, or the angles, rad.
+        Crank angles of the tables: their number over the period, end excluded, or the angles, rad.
     engine : "numpy" or "compiled"
-        As for `solve`; "compiled" pays where the same kind of machine is run often.
+        As for `solve`; "compiled" saves time if the same kind of machine runs often.
 
     Returns
     -------
@@ -226,10 +227,10 @@ def steady(scene, motor, flywheel=0.0, *, angles=720, engine=None) -> Running:
     Raises
     ------
     DriveError
-        There is no periodic running: the motor is too weak, with the torque missing; nothing holds the speed; the
-        inertia vanishes somewhere.
+        There is no periodic running: the motor is too weak (the message gives the missing torque); nothing stabilises
+        the speed; the inertia vanishes somewhere.
     ParameterError
-        A value is out of range, or a load is known at some crank angles only.
+        A value is out of range, or a load has values only at some crank angles.
     AssemblyError
         The mechanism does not make full turns.
 
@@ -278,8 +279,7 @@ def _run_at_mean_speed(driven, scene):
     """Pieces, and energy U at their points, under the constant torque that keeps the scene's mean speed."""
     if driven.loads_by_speed:
         raise DriveError(
-            f"{scene.mechanism.name}: loads depend on the speed, so no constant torque is known that carries them; "
-            "give a motor"
+            f"{scene.mechanism.name}: loads depend on the speed, so the constant torque is unknown; give a motor"
         )
     speed = abs(scene.crank_speed)
     pieces, kinks = resolve_and_hint(driven, driven.direction * speed)
@@ -324,7 +324,7 @@ def _under_constant_torque(driven, pieces, speed):
         if low is None:
             raise DriveError(
                 f"{driven.scene.mechanism.name}: no constant torque keeps a mean speed as low as {speed:.6g} rad/s: "
-                "the energy gained over the turn alone makes it faster; give a larger flywheel or a higher speed"
+                "the energy gained within the turn already exceeds it; give a larger flywheel or a higher speed"
             )
         energy = gained + scale * math.exp(brentq(excess_speed, low, 5.0, xtol=1e-15, rtol=1e-15))
         slow = np.sqrt(0.5 * inertia / energy)

@@ -1,9 +1,9 @@
 """Motion from a crank angle and speed, through standstill and reversal: energy over the crank angle, then time.
 
-The motion is followed over a part of the period at a time, up to a whole one, by `energy_equation`: pieces end at the
-kinks of loads and friction, so none is crossed. At a standstill the energy vanishes as the distance to it does; with
-the distance as length times u^2, the speed over u, the time and all torques are smooth in u. After a stop the machine
-continues, turns back, or sticks: it stays at rest if the net torque moves it in neither sense.
+`energy_equation` follows the motion over parts of the period, up to a whole period at a time. Pieces end at the kinks
+of loads and friction, so no kink lies inside a piece. Near a standstill the energy is proportional to the distance from
+it. With the distance as length times u^2, the speed over u, the time and all torques are smooth in u. After a stop the
+machine continues, turns back, or sticks: it stays at rest if the net torque moves it in neither sense.
 """
 
 import math
@@ -21,19 +21,19 @@ from .one_dof import ANGLE_AHEAD
 from .resolution import MAX_PERIODS, MIN_INERTIA_RATIO, PastPeriods, plain_pieces, resolved
 
 MAX_PARTS = 10_000
-"""Parts of the period, most of them whole, after which a motion is refused."""
+"""Largest number of parts of a motion, mostly whole periods."""
 ANGLE_TOLERANCE = 1e-12
-"""Crank angles nearer than this to an edge, rad, count as there."""
+"""Crank angles nearer than this to an edge, rad, count as the edge."""
 REST_ANGLE = 1e-10
-"""Crank angle, rad, within which a motion that cannot be followed further stops."""
+"""Crank angle, rad, within which a motion without further steps stops."""
 MAX_STEPS_AT_REST = 40
-"""Fixed-point steps of the energy beside a standstill."""
+"""Fixed-point steps of the energy near a standstill."""
 ROUNDING = 1e-15
 """Relative rounding of crank angles and torques: noise of the net torque on steep ramps and near an equilibrium."""
 MAX_REACH_GROWTH = 8.0
-"""Ratio of the crank angles that are tried one after the other."""
+"""Ratio of successive crank angles in attempts."""
 MAX_EDGES = 200
-"""Edges of a part, besides 8 times those at first, above which a shorter part is tried."""
+"""Largest number of edges of a part, besides 8 times the initial number; beyond it the part is shortened."""
 MIN_SPEED = 1e-3
 """Smallest crank speed, rad/s, at which the torques of the period are resolved before the motion is known."""
 MIN_PART = 1e-6
@@ -112,7 +112,7 @@ def sense_from_rest(driven, angle):
     """Sense in which a machine starts from rest, +1 or -1; 0 if it stays at rest.
 
     At a kink, where loads may jump, each sense has the torque ahead of it. A torque whose sign depends on the rounding
-    of the crank angle moves nothing.
+    of the crank angle does not move the machine.
     """
     at_kink = np.any(np.abs(driven.kinks - angle % driven.period) < ANGLE_TOLERANCE)
     places = angle + ROUNDING * max(abs(angle), 1.0) * np.array([-1.0, 0.0, 1.0])
@@ -122,8 +122,8 @@ def sense_from_rest(driven, angle):
     if forward > 0.0 > backward:
         raise DriveError(
             f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
-            f"way: {forward:.6g} N m drive it on once it turns counter-clockwise, {backward:.6g} N m once it turns "
-            "clockwise; give from_speed, as small as you like, the sense that is meant",
+            f"way: {forward:.6g} N m drive it on counter-clockwise, {backward:.6g} N m drive it on "
+            "clockwise; give a small from_speed in the wanted sense",
             crank_angle=angle,
         )
     return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0
@@ -163,7 +163,7 @@ def integrate_motion(driven, angle, speed, end, target=None, to_standstill=False
 
 
 class March:
-    """A motion that is followed: its time, s, energy, J, and speed at a crank angle `inside` of the period."""
+    """A motion in progress: its time, s, energy, J, and speed at a crank angle `inside` of the period."""
 
     def __init__(self, driven, angle, speed, end=math.inf, target=None):
         self.driven, self.end, self.target = driven, end, target
@@ -179,9 +179,9 @@ class March:
         self.parts = self.passed = 0
 
     def run(self, direction):
-        """Follow the motion in one sense: what ends it, and the piece and place at a target speed, else None.
+        """Follow the motion in one sense; returns its end, and the piece and place at a target speed, else None.
 
-        It ends with "end", "ready", "still", "turned", or "lost".
+        The end is "end", "ready", "still", "turned", or "lost".
         """
         machine, reach = self.driven.along(direction), self.driven.period
         while True:
@@ -216,7 +216,7 @@ class March:
                 return "still", None
 
     def _stops_here(self):
-        """Whether the torques around take the energy that is left within `REST_ANGLE`."""
+        """Whether the local torques absorb the remaining energy within `REST_ANGLE`."""
         around = (
             self.driven.along(sense).torque_at_rest(self.inside + way * ANGLE_AHEAD)[0]
             for sense in (1.0, -1.0)
@@ -225,7 +225,7 @@ class March:
         return self.energy <= REST_ANGLE * max(map(abs, around))
 
     def turn(self, direction):
-        """Follow the motion over a period: whether it completes it. `energy_at` returns its energy afterwards."""
+        """Follow the motion over a period; returns whether it is complete. `energy_at` then returns its energy."""
         self.left, self.turned = self.driven.period, []
         return self.run(direction)[0] == "turned"
 
@@ -286,13 +286,13 @@ class March:
         return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
 
     def _stops_within(self, machine, reach):
-        """Whether the torque just ahead takes the energy within a crank angle."""
+        """Whether the torque just ahead absorbs the energy within a crank angle."""
         place = self.inside + machine.direction * ANGLE_AHEAD
         net = self._attempt(machine.torque_at, place, machine.direction * self.speed)
         return net is not None and -machine.direction * net * reach > self.energy
 
     def _attempt(self, function, *parts):
-        """Result of a function, or None where it has none or fails; `problem` is its error."""
+        """Result of a function, or None if it fails; `problem` is its error."""
         self.problem = None
         try:
             return function(*parts)
@@ -304,8 +304,8 @@ class March:
         self.parts += 1
         if self.parts > MAX_PARTS:
             raise DriveError(
-                f"{self.driven.scene.mechanism.name}: the motion is too long to follow: {self.time:.6g} s, to crank "
-                f"angle {math.degrees(self.inside + self.shift):.6g} deg, took {MAX_PARTS} parts of the period; give "
+                f"{self.driven.scene.mechanism.name}: the motion is too long: {self.time:.6g} s, to crank "
+                f"angle {math.degrees(self.inside + self.shift):.6g} deg, needed {MAX_PARTS} parts of the period; give "
                 "an earlier time as until",
                 crank_angle=self.inside + self.shift,
             )
@@ -319,7 +319,7 @@ class March:
         return self.known[machine.direction]
 
     def _within_time(self, machine):
-        """Crank angle within which the motion stays until its end time, about."""
+        """Approximate crank angle that the motion covers until its end time."""
         left = self.end - self.time
         if self.energy:
             return max(3.0 * self.speed * left, MIN_PART)
@@ -349,9 +349,9 @@ class March:
 
 
 def pass_part(driven, pieces, kinks, start, guess):
-    """Stretch over pieces from an energy at the start, the energy after it, and what to keep of it; or None.
+    """Stretch over pieces from an energy at the start, the energy after it, and the solution to keep; or None.
 
-    `guess` is the energy at the points, about.
+    `guess` is the approximate energy at the points.
     """
     most = 8 * pieces.edges.size + MAX_EDGES
 
@@ -402,7 +402,7 @@ def come_to_rest(driven, angle, energy, room, count):
 
 @lru_cache
 def _means(count):
-    """Shares u of the way from rest at the points, and a matrix from values there to means over the way to each."""
+    """Distances u from rest at the points, and a matrix from values there to means from rest to each point."""
     nodes, weights = np.polynomial.legendre.leggauss(count)
     share, within = 0.5 * (1.0 + rule(count).points), 0.5 * (1.0 + nodes)
     table = chebyshev.chebvander(2.0 * np.multiply.outer(np.append(share, 1.0), within) - 1.0, count - 1)
@@ -411,10 +411,10 @@ def _means(count):
 
 
 def _beside_rest(driven, angle, length, energy, count):
-    """Stretch beside a standstill, its length, rad, and the mean torque that changes the energy over it; or None.
+    """Stretch next to a standstill, its length, rad, and the mean torque over it; or None.
 
     It leaves rest at the angle, or, with an energy there, comes to rest at a length that follows from it. With M the
-    mean of the torque over the way from rest, the energy is length u^2 M.
+    mean of the torque from rest, the energy is length u^2 M.
     """
     share, means, whole = _means(count)
     direction, root = driven.direction, 1.0 if energy is None else -1.0

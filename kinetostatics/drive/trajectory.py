@@ -1,4 +1,4 @@
-"""Motion of a machine over time, as `start` and `coast` give it."""
+"""Motion of a machine over time, the result of `start` and `coast`."""
 
 import math
 from dataclasses import dataclass, field
@@ -12,7 +12,9 @@ from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.brackets import find_roots
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property, pyplot
+from ..numbers.output_units import output_units
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
 from .motor import Motor
@@ -22,13 +24,13 @@ TIME_RULE = checks.Number("s", table=True)
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 """Gauss points and weights of the work in a step of the integration."""
 KINK_TOLERANCE = 1e-9
-"""Crank angles, rad, between a kink and the end of a step that count as none."""
+"""Largest distance, rad, of a kink at the end of a step."""
 
 
 class Event(NamedTuple):
-    """What happens at a time and crank angle of a motion over time.
+    """Event at a time and crank angle of a motion over time.
 
-    Of a `Trajectory` it is one of ``.events``.
+    A `Trajectory` lists them in ``.events``.
 
     Attributes
     ----------
@@ -52,19 +54,21 @@ class Event(NamedTuple):
     time: float
     crank_angle: float
 
+    __repr__ = repr_with_units(time="s", crank_angle="rad")
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Motion of a machine over time; made by `start` and `coast`.
+    """Motion of a machine over time; `start` and `coast` return it.
 
     Attributes
     ----------
     scene : Scene
     motor : Motor or None
     flywheel : float
-        All inertia on the crank besides the links, kg m2.
+        Inertia on the crank without the links, kg m2.
     time, crank_angle, speed, acceleration : array (N,)
-        s, rad (not taken modulo a turn), rad/s, rad/s2: the steps of the integration, or times asked for by `at`.
+        s, rad (not taken modulo a turn), rad/s, rad/s2: the steps of the integration, or the times given to `at`.
     events : tuple of Event
         In order of time.
 
@@ -102,7 +106,7 @@ class Trajectory:
         )
 
     def at(self, time):
-        """The same motion at other times, s: a number of even ones, or an array."""
+        """The same motion at other times, s: an array, or a number of even times."""
         if isinstance(time, int | np.integer) and not isinstance(time, bool):
             checks.require("at", checks.count("time", time, size=checks.BYTES_PER_ANGLE))
             time = np.linspace(self.time[0], self.time[-1], time)
@@ -121,7 +125,7 @@ class Trajectory:
 
     @cached_property
     def solution(self):
-        """`Solution` along the motion: every reaction and torque at its times; at standstill, of the motion before."""
+        """`Solution` along the motion: reactions and torques at its times; at standstill, those just before."""
         return self._moving.solve(self.crank_angle)
 
     @property
@@ -157,7 +161,7 @@ class Trajectory:
 
     @property
     def _kink_times(self):
-        """Times inside steps at which loads have kinks; none, if the motion was integrated between them."""
+        """Times inside steps at which loads have kinks; empty if the motion was integrated between them."""
         (kinks, _), angle, period = load_kinks(self.scene), self._dense(self._ends)[0], self.scene.period
         low, high = np.minimum(angle[:-1], angle[1:]), np.maximum(angle[:-1], angle[1:])
         turns = np.arange(np.floor(low.min() / period), np.floor(high.max() / period) + 1.0)
@@ -184,11 +188,14 @@ class Trajectory:
         """Kinetic energy of links and flywheel, J."""
         return self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2
 
-    def frame(self):
-        """Table with a row for each time, a pandas DataFrame: motion, energies, torques of motor and loads."""
+    def frame(self, units=None):
+        """Table with a row for each time, a pandas DataFrame: motion, energies, torques of motor and loads.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
-        return pd.DataFrame(
+        table = pd.DataFrame(
             {
                 "time [s]": self.time,
                 "crank_angle [deg]": np.degrees(self.crank_angle),
@@ -202,6 +209,7 @@ class Trajectory:
                 "potential_energy [J]": self.solution.potential_energy,
             }
         )
+        return output_units(units, "frame").table(table)
 
     def plot(self, ax=None):
         """Crank speed over time, reversals and standstill marked; returns the axes."""
@@ -216,7 +224,7 @@ class Trajectory:
 
 
 def accelerations(driven, angle, speed, sense):
-    """Crank accelerations at angles, speeds and senses of a motion that may turn back, rad/s2."""
+    """Crank accelerations at angles, speeds and senses of a motion that may reverse, rad/s2."""
     found = np.empty(angle.shape)
     for way in np.unique(sense):
         own = sense == way

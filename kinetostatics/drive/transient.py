@@ -22,7 +22,7 @@ from .trajectory import Event, Trajectory, accelerations
 STARTED_SPEED_RATIO = 0.99
 """Speed over the mean speed of steady running at which a start ends."""
 MAX_TURNS = 1e5
-"""Turns after which a motion without end is refused."""
+"""Largest number of turns of a motion."""
 MAX_ANGLE = 1e6
 """Largest initial crank angle, rad; a larger one costs too many digits."""
 MIN_TORQUE_RATIO = 1e-9
@@ -30,7 +30,7 @@ MIN_TORQUE_RATIO = 1e-9
 SLOWING_TOLERANCE = 1e-8
 """Relative loss of kinetic energy in a period below which a machine does not slow down."""
 ENERGY_TOLERANCE = 1e-9
-"""Energy relative to the energy exchanged in a turn that counts as 0."""
+"""Negligible energy, relative to the energy exchanged in a turn."""
 
 
 def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor=None, *, engine=None) -> Trajectory:
@@ -39,7 +39,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     Parameters
     ----------
     scene : Scene
-        Mechanism and loads; its crank speed does not matter.
+        Mechanism and loads; its crank speed has no effect.
     flywheel : float
         Moment of inertia on the crank besides its own link, kg m2.
     from_angle, from_speed : float
@@ -57,7 +57,7 @@ def coast(scene, flywheel=0.0, from_angle=0.0, from_speed=0.0, until=None, motor
     Raises
     ------
     DriveError
-        The motion cannot go on: the mechanism does not close, or all inertia vanishes.
+        The motion cannot continue: the mechanism does not close, or all inertia vanishes.
     ParameterError
         A value is out of range.
 
@@ -100,8 +100,8 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
     Raises
     ------
     DriveError
-        It does not start: the torque of the loads at rest exceeds that of the motor at this or a later crank angle;
-        with the torque missing, and what would help. Or it has no steady running to start to.
+        The machine does not start: at this or a later crank angle the loads need more torque at rest than the motor
+        gives. The message gives the missing torque and remedies. Or there is no steady running to start to.
     ParameterError
         A value is out of range.
 
@@ -118,7 +118,7 @@ def start(scene, motor, flywheel=0.0, from_angle=0.0, until=None, *, engine=None
 
 
 def start_to(running, scene, motor, flywheel, from_angle, until=None, *, engine=None):
-    """`start` to a periodic running, or without a time or running to the one it finds."""
+    """`start` to a periodic running, by default the one it finds."""
     if not isinstance(motor, Motor):
         checks.require("start", f"motor must be a Motor, got {checks.shown(motor)}")
     driven, flywheel, angle, _ = _initial_state("start", scene, motor, flywheel, from_angle, 0.0, engine)
@@ -177,7 +177,7 @@ def _require_standstill(driven, angle, speed):
             try:
                 running = steady(driven.scene, driven.motor, driven.flywheel - driven.motor.inertia_at_crank)
                 steady_speed = abs(float(running.motion(np.array([angle]))[0][0]))
-            except DriveError:  # no running that keeps it from stopping
+            except DriveError:  # no running prevents its stop
                 pass
         if abs(speed) >= steady_speed:
             raise DriveError(f"{name}: never comes to a standstill: its motor keeps it running; give a time as until")
@@ -197,8 +197,8 @@ def _require_standstill(driven, angle, speed):
     motion = 0.5 * (driven.flywheel + float(state.inertia[0])) * speed * speed
     if taken[-1] <= ENERGY_TOLERANCE * np.abs(between).sum() and taken.max() < (1.0 - ENERGY_TOLERANCE) * motion:
         raise DriveError(
-            f"{name}: never comes to a standstill: of {motion:.6g} J of motion the loads take "
-            f"{max(taken.max(), 0.0):.6g} J at most, and give back all that they take in a turn; give a time as until, "
+            f"{name}: never comes to a standstill: of {motion:.6g} J kinetic energy the loads take "
+            f"{max(taken.max(), 0.0):.6g} J at most, and return all of it in a turn; give a time as until, "
             "or a load that resists"
         )
 
@@ -215,9 +215,9 @@ def _start_error(driven, angle, what):
     remedies = [f"a motor with {asked[most] / rest:.3g} times the torque at rest" if rest > 0.0 else "another motor"]
     step = int(driven.direction)
     energy = np.cumsum((asked - rest)[::step])  # missing energy, in the order of motion
-    if energy[-1] < 0.0:  # from its peak on the motor always gives more than the loads take
+    if energy[-1] < 0.0:  # after its peak the motor always gives more than the loads take
         easy = float(places[::step][(int(np.argmax(energy)) + 1) % places.size])
-        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which that torque carries it round")
+        remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which that torque completes the turn")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
@@ -240,8 +240,8 @@ def _trajectory(driven, scene, angle, speed, until, target=None, one_way=False):
         angle, speed = rows[:2, -1]
         driven.scene.solve(np.array([angle + speed * 1e-6]))
         raise DriveError(
-            f"{scene.mechanism.name}: the motion cannot be followed beyond {time[-1]:.6g} s, at crank angle "
-            f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may stand in a limit position "
+            f"{scene.mechanism.name}: the motion cannot be computed beyond {time[-1]:.6g} s, at crank angle "
+            f"{math.degrees(angle):.6g} deg and {speed:.6g} rad/s: the mechanism may be in a limit position "
             "there, or have no inertia",
             crank_angle=float(angle),
         )

@@ -288,22 +288,21 @@ class Recorder:
         return rows if is_tabled else [mechanism.place(row).travels[load.on].position for row in rows]
 
     def _zero_angle(self, table, item, place, idle):
-        """Crank angle of the dead centre where a table begins.
-
-        A Newton step from the angle computed beforehand gives its derivatives: the rate is zero there.
-        """
-        mechanism, slider = idle.mechanism, table.slider or next(iter(idle.mechanism.guides))
-        is_tabled = _has_tabled_cam(mechanism)
+        """Crank angle of the dead centre where a table begins."""
+        is_tabled = _has_tabled_cam(idle.mechanism)
         ((zero,),) = self._tabled(
             (("phi_0", 0, "rad"),),
             lambda motion, leaves: [item(motion).zero_angle(motion)],
             f"a table from {table.zero} beside a cam of samples" if is_tabled else "",
             place,
         )
-        if is_tabled:
-            return _nodes(zero)
-        travel = mechanism.place(_nodes(zero)).travels[slider]
-        return _nodes(zero) - travel.first / travel.second
+        slider = table.slider or next(iter(idle.mechanism.guides))
+        return _nodes(zero) if is_tabled else self._refined(_nodes(zero), idle.mechanism, slider)
+
+    def _refined(self, angle, mechanism, slider):
+        """Crank angle of a dead centre after a Newton step, which gives its derivatives: the rate is zero there."""
+        travel = mechanism.place(angle).travels[slider]
+        return angle - travel.first / travel.second
 
     def _given(self, load, place):
         """Values of a load given by user code, from a table."""

@@ -1,4 +1,4 @@
-"""What the machine is: links, guides, crank, groups, cams, loads, friction pairs, and mechanisms of them.
+"""Description of a machine: links, guides, crank, groups, cams, loads, friction pairs, and mechanisms of them.
 
 May import errors, numbers.
 """

@@ -44,11 +44,11 @@ def crank_slider(
     guide_offset : float or array
         Signed distance of the guide from O along the guide's left normal, m.
     guide : Guide
-        In place of the two, as from ``Guide.through(W1, W2)``.
+        Replaces `guide_angle` and `guide_offset`; from ``Guide.through(W1, W2)``, for example.
     assembly : +1, -1, "open" or "crossed"
-        +1: slider ahead of A along the guide. "open" is so, "crossed" the other way round, in the half turn behind the
-        guide's right normal, and goes on through change points, as where the coupler is as long as the crank and the
-        guide runs through O; without change points it keeps that side.
+        +1: slider ahead of A along the guide; -1: behind it. "open" starts as +1 and "crossed" as -1, in the half turn
+        behind the guide's right normal; both pass change points, for example where coupler and crank are equally long
+        and the guide runs through O. Without change points they keep that side.
     crank, coupler, slider : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -59,7 +59,7 @@ def crank_slider(
     Raises
     ------
     ParameterError
-        A value no machine can have, or both ways of giving the guide.
+        A value is impossible, or both ways of giving the guide.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def cam_crank_slider(
     Raises
     ------
     ParameterError
-        A value no machine can have, or both ways of giving the guide.
+        A value is impossible, or both ways of giving the guide.
 
     Examples
     --------
@@ -135,7 +135,7 @@ def cam_crank_slider(
 
 
 def crank_slider_parts(mechanism):
-    """Cam roller, None without a cam, and slider group of what `crank_slider` or `cam_crank_slider` makes; else None.
+    """(cam roller or None, slider group) of a mechanism by `crank_slider` or `cam_crank_slider`; None for all others.
 
     The slider's pin may have any name.
     """
@@ -172,10 +172,10 @@ def four_bar(
     rocker_pivot : (x, y)
         Fixed pivot O2 of the rocker, m.
     assembly : +1, -1, "open" or "crossed"
-        +1: B to the left of the direction from A to O2. "open" and "crossed" are so, and the other way round, in the
-        half turn behind the direction O -> O2, and go on through change points as inertia carries the links, so that a
-        parallelogram stays one; without change points they keep that side. Lengths equal within 8 ulp of the longest
-        make a change point. `Mechanism.turns` tells whether the branch closes after one turn or two.
+        +1: B to the left of the direction from A to O2; -1: to the right. "open" starts as +1 and "crossed" as -1, in
+        the half turn behind the direction O -> O2. Both pass change points as inertia carries the links, so a
+        parallelogram stays a parallelogram; without change points they keep that side. Lengths equal within 8 ulp of
+        the longest make a change point. `Mechanism.turns` is the number of turns after which the branch closes.
     crank, coupler, rocker : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -186,7 +186,7 @@ def four_bar(
     Raises
     ------
     ParameterError
-        A value no machine can have.
+        A value is impossible.
 
     Examples
     --------
@@ -207,14 +207,14 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(),
     crank_length : float or array
         m; arrays of shape (designs, 1) make a batch.
     pivot : (x, y)
-        Fixed pivot O2 of the lever, m: farther from O than A the lever rocks, nearer it makes full turns.
+        Fixed pivot O2, m. The lever rocks if O2 is farther from O than A, and makes full turns if it is nearer.
     offset : float or array
-        Of the slot's axis to the left of the pivot, m.
+        Distance of the slot's axis to the left of the pivot, m.
     assembly : +1, -1, "open" or "crossed"
-        +1: the slot points to the block, -1: away from it. "open" and "crossed" are so in the half turn behind the
-        direction O -> O2 and go on through change points: of a crank as long as the pivot's distance the block passes
-        the pivot, the lever turns half as fast as the crank, and the motion closes after two turns. Without change
-        points they keep that side.
+        +1: the slot points to the block; -1: away from it. "open" starts as +1 and "crossed" as -1, in the half turn
+        behind the direction O -> O2; both pass change points. With a crank as long as the distance of the pivot the
+        block passes the pivot, the lever turns half as fast as the crank, and the motion closes after two turns.
+        Without change points they keep that side.
     crank, lever, block : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -225,7 +225,7 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(),
     Raises
     ------
     ParameterError
-        A value no machine can have.
+        A value is impossible.
 
     Examples
     --------
@@ -258,7 +258,7 @@ def scotch_yoke(
     guide_angle, guide_offset, guide
         As for `crank_slider`.
     slot_angle : float or array
-        From the guide's direction, rad; not 0 or pi.
+        Angle of the slot from the guide's direction, rad; not 0 or pi.
     crank, slider, block : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -269,7 +269,7 @@ def scotch_yoke(
     Raises
     ------
     ParameterError
-        A value no machine can have, a slot parallel to the guide, or both ways of giving the guide.
+        A value is impossible, a slot parallel to the guide, or both ways of giving the guide.
 
     Examples
     --------

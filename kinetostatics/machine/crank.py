@@ -1,6 +1,6 @@
 """The crank, which turns about O and carries pin A or guides a block in its slot, and pins on any link.
 
-A `Pin` is a further joint fixed to a link, for more groups to hang on: ternary links, second throws, articulated rods.
+A `Pin` is a further joint fixed to a link, for more groups: ternary links, second throws, articulated rods.
 """
 
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ class Rotor(Link):
         return Rotor(plane=self.plane)
 
     def joined(self, mass, place, plane=None):
-        """The rotor with a point mass (kg) fixed to it at place (along, across) in a plane, m, by default its own."""
+        """The rotor with a point mass (kg) fixed to it at place (along, across) in a plane, m; default: its plane."""
         if mass == 0:
             return self
         whole, z = self.mass + mass, self.plane if plane is None else plane
@@ -189,15 +189,15 @@ class Crank(checks.Checked, Part):
 
 @dataclass(frozen=True, eq=False)
 class Pin(checks.Checked, Group):
-    """Joint `name` fixed to the link `on`, which supplies the force of the groups that hang on it.
+    """Joint `name` fixed to the link `on`, which carries the force of the groups attached to the pin.
 
-    It adds no link, no reaction and no condition of closure. Several groups may hang on one pin, each with a label of
-    its own; each has its reaction there, and what they demand of the link adds up.
+    It adds no link, no reaction and no condition of closure. Several groups may share a pin, each with its own label
+    and its own reaction; their forces on the link add up.
 
     Parameters
     ----------
     on : str
-        Name of the link: the crank, or one that a group before it adds, as it is called with that group's label;
+        Name of the link: the crank, or a link of an earlier group, with that group's label;
         "frame" for a fixed point.
     at : (along, across)
         From the link's reference joint (see `Link`) along its direction and across it, a quarter turn
@@ -209,7 +209,7 @@ class Pin(checks.Checked, Group):
     Raises
     ------
     ParameterError
-        A place that is not finite; the mechanism raises it where no part before the pin adds the link.
+        The place is not finite; or, from the mechanism, no part before the pin adds the link.
 
     Examples
     --------
@@ -268,7 +268,7 @@ class Pin(checks.Checked, Group):
         placement.courses.update({name: Course(throw=throw) for name, throw in self.throws.items()})
 
     def follow(self, placement, joints):
-        """Keep a joint that moves where it is known."""
+        """Keep the known position of a joint that moves."""
         if self.on == FRAME:
             self.place(placement)
         else:

@@ -1,4 +1,4 @@
-"""Friction by joint: coefficients and sizes of its surfaces, by the name of the pair (`links.Turning` ...)."""
+"""Friction by joint: coefficients and sizes of the surfaces, by the name of the pair (`links.Turning` ...)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -13,13 +13,13 @@ from .links import Rolling, Sliding, Turning, present
 COEFFICIENT = checks.Number(
     "1",
     low=0.0,
-    usual=checks.PlausibleRange(2.0, "nothing rubs so much; does it stand in place of a size, or in percent?"),
+    usual=checks.PlausibleRange(2.0, "no surface has this much friction; is it a size, or in percent?"),
 )
 SIZE = checks.Number("m", low=0.0, strict=True)
 ROLLING_ARM = checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.02, "is it in mm?", 1e-3))
 PIN_RADIUS = replace(SIZE, usual=checks.PlausibleRange(1.0, "is it in mm?", 1e-3, in_links=True))
 PASSES_BY_SOLVER = (3, 6, 12)
-"""Numbers of passes over the directions of all reactions, to try in turn; each pass doubles the digits."""
+"""Numbers of passes over the directions of all reactions, tried in turn; each pass doubles the digits."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class PinFriction(checks.Checked, Batched):
     ----------
     mu : float or array
     radius : float or array
-        Of the pin, m.
+        Radius of the pin, m.
 
     Raises
     ------
@@ -73,8 +73,8 @@ class GuideFriction(SlidingFriction):
     ----------
     mu : float or array
     half_length : float or array, optional
-        Half the length of the shoe, m: it carries the couple too by forces at its edges, which rub once the load
-        leaves the middle half. Without it only the force causes friction.
+        Half the length of the shoe, m. The edges of the shoe carry the couple too, and their friction counts once the
+        load leaves the middle half. Without `half_length` only the force causes friction.
 
     Raises
     ------
@@ -128,11 +128,11 @@ class RollerFriction(checks.Checked, Batched):
     Parameters
     ----------
     mu : float or array
-        In the pin, or of its bearing.
+        Coefficient in the pin or its bearing.
     pin_radius, roller_radius : float or array
         m.
     rolling_arm : float or array, optional
-        Arm of rolling friction, m: the cam's force acts by so much ahead of the contact.
+        Arm of rolling friction, m: distance of the cam's force ahead of the contact.
 
     Raises
     ------
@@ -187,7 +187,7 @@ MOTIONS = {Turning: "turns on a pin", Sliding: "slides", Rolling: "rolls on a pi
 
 
 def friction_kind(pair):
-    """Class of friction that a pair takes."""
+    """Class of friction for a pair."""
     if isinstance(pair, Sliding):
         return GuideFriction if pair.against == "frame" else SlotFriction
     return PinFriction if isinstance(pair, Turning) else RollerFriction
@@ -293,7 +293,7 @@ def friction_problems(mechanism, given):
 
 
 def _roller_problems(name, given, tightest, own):
-    """Yield problems of a roller's radius beside that of the curvature of its path and that of its group."""
+    """Yield problems of a roller's radius: too large for its path, or different from the roller of its group."""
     if not checks.has_known_values(given):
         return
     words = f"friction: roller_radius of {name!r}, {np.max(given):.6g} m, must be"

@@ -1,29 +1,28 @@
 """Structural group: the protocol through which the library sees the parts of a mechanism.
 
 Motion flows outward from the crank, group by group; forces flow inward from the last group to the crank. A group is a
-frozen dataclass (``eq=False``) derived from `Group`. Only this protocol tells the library of its links and their names.
+frozen dataclass (``eq=False``) derived from `Group`. Only this protocol gives the library its links and their names.
 
 Declarations
 ------------
-`LINKS` gives for each field with a `Link` the field that names its reference joint. `declaration` returns the other
-parts in a `Declaration`, called without the label; `Group` adds the label and makes the tables
+`LINKS` maps each field with a `Link` to the field that names its reference joint. `declaration` returns the other parts
+in a `Declaration`, named without the label; `Group` adds the label and makes the tables
 
     links, references, joints, bars, guides, slots, led, pairs, outputs, motions, contacts, lengths
 
-A table that follows another rule is a property of its own, with labelled names. Lists of other kinds are `hangs_on`,
-the joints it hangs on; `knots`, where the law of a cam bends or jumps; `curves`, joints on a curve, and what drawings
-call it; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes; `dimensions`, what its
-lengths and angles measure on a drawing (`machine.dimensions`). Reactions and forces with their units, `outputs`, follow
-from `pairs`.
+A table that follows another rule is its own property, with labelled names. Other lists are `hangs_on`, the joints that
+the group is attached to; `knots`, where the law of a cam bends or jumps; `curves`, joints on a curve, with its name in
+drawings; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes; `dimensions`, the lengths
+and angles of a drawing (`machine.dimensions`). Reactions and forces with their units, `outputs`, follow from `pairs`.
 
 Kernels, without branches on values
 -----------------------------------
-    place(placement)                  adds joints and links, from the joints it hangs on
+    place(placement)                  adds joints and links, from the joints it is attached to
     closure(placement)                margin at each crank angle: negative where it is open, small near a limit position
     requirement(placement)            condition for its assembly, with its numbers, for the error message
-    resolve(placement, loads, along)  forces on its links, and what they demand of other links: a `Resolved`
+    resolve(placement, loads, along)  forces on its links, and the wrenches that other links supply: a `Resolved`
 
-and, where it has them,
+and optionally
 
     follow(placement, joints)         places its links at known joints: for methods under study
     motion(name, placement)           value of a quantity of `motions`
@@ -34,7 +33,7 @@ and, where it has them,
     relative_radius(name, placement, side)  radius of the relative curvature of a contact, by the sign of its force
 
 *Fields.* Lengths, a `Guide` or a pivot, an assembly of +1 or -1, the links; ``on`` and ``pin``, names of joints;
-``label``, the ending of names of links and forces where a mechanism has two of the kind; ``plane``, its position along
+``label``, the suffix of link and force names where a mechanism has two groups of a kind; ``plane``, its position along
 the crankshaft, or None (`machine.planes`), by the rule `PLANE`. ``PATHS`` renames fields in paths
 such as "coupler_length2"; "" leaves a name out. A field ``cam`` holds a curve with ``polar(angle, ray) -> r, r',
 r''``, which need not be arithmetic: engines tabulate it. Lengths may be arrays (designs, 1): write kernels with
@@ -47,17 +46,17 @@ and its slope, None: it never turns), for each slider its coordinate along its g
 motion that `resolve` needs again. ``placement.courses`` takes a `Course` for a joint whose motion is known without
 the rounding of its position.
 
-*resolve* is a pure function. ``loads`` holds by link the wrench on it about its reference joint: inertia, weight and
-what groups further out demand. ``along`` holds by slider the applied force along its guide, apart since it may nearly
-cancel with inertia. The equilibrium of the links gives the unknown forces *on* them, linear in the loads, for friction
-asks several times. What the group needs of other links goes into ``demands``, with the sign that it has on the group.
+*resolve* is a pure function. ``loads`` maps each link to the wrench on it about its reference joint: inertia, weight
+and the demands of outer groups. ``along`` maps each slider to the applied force along its guide, kept separate because
+it may nearly cancel with inertia. The equilibrium of the links gives the unknown forces *on* them. It must be linear in
+the loads, because friction calls it several times. ``demands`` are the wrenches on the group that other links supply.
 
 *Change points.* Groups that pass them derive from `groups.branches.Branch`: ``on_crank(throws)`` sets the text
 `passage`, part of the structure; `turns`, `change_points` and `kink` follow from it. ``beside(groups, throws)`` returns
 the group specialised for its neighbours (toggles, and change points on a rocker).
 
 *Hand calculations.* `Solution.explain` shows what the kernels compute, under the names of their local variables. The
-module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``, for one kernel alone as
+module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``, for a single kernel as
 ``"resolve.across"``, which may be an argument; primes count derivatives, ``"r'"``.
 
 `ks.check(group)` tests a group; tests/machine/test_group.py has a whole example.
@@ -82,7 +81,7 @@ RATES = ("_rate", "_angular_acceleration")
 TRAVELS = ("_position", "_velocity", "_acceleration")
 """Endings of the quantities of a slider."""
 GROUND = "ground"
-"""Sum of the forces on the frame, and first word of the name of each."""
+"""Name of the sum of the forces on the frame, and first word of the name of each."""
 ROCKING, SHAFT_TORQUE = "rocking_moment", "shaft_torque"
 """Quantities of a mechanism with planes: the moment, and first word of the torques in its crankshaft."""
 BEARINGS = {"O left": "left", "O right": "right"}
@@ -115,7 +114,7 @@ class Point(NamedTuple):
 
 
 class Bar(NamedTuple):
-    """A link that keeps joint `end` at a constant distance from joint `start`, its reference joint."""
+    """A link that keeps joint `end` at a constant distance from its reference joint `start`."""
 
     start: str
     end: str
@@ -124,7 +123,7 @@ class Bar(NamedTuple):
 
 
 class Output(NamedTuple):
-    """Declaration of a quantity: SI unit, whether it is a vector, and in words what acts on what.
+    """Declaration of a quantity: SI unit, whether it is a vector, and a text that names both bodies.
 
     `at` is the joint at which a reaction acts, where the reaction has another name.
     """
@@ -138,8 +137,8 @@ class Output(NamedTuple):
 class Resolved(NamedTuple):
     """Reactions (vectors) and scalars by name, and the wrenches that other links must supply.
 
-    `demands` holds by joint the force and couple through it, by link a wrench about its reference joint; those of a
-    whole mechanism, by the first link of a group, what the group demands of the crank about O.
+    `demands` maps a joint to the force and couple through it, a link to a wrench about its reference joint; for a
+    whole mechanism, the first link of a group to the wrench on the crank about O.
     """
 
     reactions: dict[str, Any]
@@ -151,9 +150,9 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 
 
 class Declaration(NamedTuple):
-    """Parts of a group, called without the label.
+    """Parts of a group, named without the label.
 
-    `Group` names and describes the reactions of `pairs`. `lengths` holds the numbers in m, but for mass centres: by
+    `Group` names and describes the reactions of `pairs`. `lengths` holds the numbers in m except mass centres: by
     default bars, offsets of guides and slots, and fixed joints.
     """
 
@@ -173,7 +172,7 @@ NAMES = ("link", "against", "rod", "force", "couple")
 
 
 def _declared(table, doc):
-    """Property: what a group declares of a kind, with the label on names of links and forces."""
+    """Property: parts of one kind that a group declares, with the label on names of links and forces."""
 
     def entries(group):
         found = getattr(group.declaration, table)
@@ -188,20 +187,20 @@ class Part:
     """Crank or structural group: tables of its parts and results, with the label; see the module."""
 
     LINKS: ClassVar[dict[str, str]] = {}
-    """Fields that hold links, which give them their names, and for each the field that names its reference joint."""
+    """Fields that hold links (and name them), each with the field that names its reference joint."""
     TRUSTED = False
-    """Whether tests show that its forces balance and that its names come from its texts: the library's own."""
+    """Whether tests prove that its forces balance and its names come from its texts: true for the library's own."""
     trusted = False
-    """`TRUSTED` of its own class: a class derived from it may do otherwise."""
+    """`TRUSTED` of this class itself, for a derived class may differ."""
     declaration: Any = Declaration()
     label: Any = ""
-    """Ending of its names, and of paths of its numbers, that tells them from those of another of its kind."""
+    """Suffix of its names and parameter paths, for a second group of its kind."""
     curves: Any = EMPTY
-    """Joints that run on a curve, with what drawings call it."""
+    """Joints that run on a curve, each with the name of the curve in drawings."""
     rollers: Any = EMPTY
     """Radii of rollers by the joints that are their centres, m; None where it is not known."""
     sign_forces: Any = ()
-    """Forces, by name, whose change of sign puts a kink into other forces."""
+    """Forces, by name, at whose change of sign other forces have a kink."""
     throws: Any = EMPTY
     """Pins of the crank that it adds, each a `Throw`."""
     dimensions: Any = EMPTY
@@ -215,7 +214,7 @@ class Part:
 
     @property
     def names(self):
-        """Texts that its names are made of."""
+        """Texts from which its names follow."""
         return [value for value in self.__dict__.values() if value.__class__ is str]
 
     def called(self, name):
@@ -232,7 +231,7 @@ class Part:
 
     @property
     def hangs_on(self: Any):
-        """Joints it hangs on: by default the one named `on`."""
+        """Joints it is attached to: by default the one named `on`."""
         return (self.on,)
 
     @property
@@ -261,7 +260,7 @@ class Part:
 
     @property
     def lengths(self):
-        """All lengths, places of mass centres among them, to estimate the condition; m."""
+        """All lengths, including the coordinates of mass centres, to estimate the condition; m."""
         own = self.declaration.lengths
         if not own:
             fixed = (point for point in self.joints.values() if point.link == FRAME)
@@ -271,17 +270,17 @@ class Part:
 
     @property
     def reaches(self):
-        """Lengths of bars and cam radii, the shortest of which counts for the condition; m."""
+        """Lengths of bars and cam radii, m; the shortest one enters the condition."""
         return [bar.length for bar in self.bars]
 
     # Forces and quantities
 
     @property
     def pairs(self) -> dict[str, Any]:
-        """Which links turn or slide against what, by the name of the reaction or force.
+        """Pairs of links, by the name of the reaction or force.
 
-        A reaction is called as its joint, with the label where the group hangs on that, with the link where it hangs on
-        several; that of a slider or roller as its force, but for the ending.
+        A reaction has the name of its joint: with the label if the group is attached to that joint, with the link if it
+        is attached to several. The reaction of a slider or roller has the name of its force without suffix.
         """
         found: dict[str, Any] = {}
         for pair in self.declaration.pairs:
@@ -324,16 +323,16 @@ class Part:
 
 
 class Group(Part):
-    """Structural group: how it is placed and resolved, besides its tables; see the module."""
+    """Structural group: tables, placement and forces; see the module."""
 
     plane: Any = None
-    """Position along the crankshaft, m; None: that of what it hangs on (`machine.planes`)."""
+    """Position along the crankshaft, m; None: the plane of the joint it is attached to (`machine.planes`)."""
     LAW = ("r", "m")
-    """Letter and unit of what a curve in the field `cam` gives."""
+    """Letter and unit of the values of a curve in the field `cam`."""
     passage, is_close = "", False
-    """How it passes change points, "" for none; whether it is so close to a limit that forces may outgrow torque."""
+    """Kind of change points that it passes, "" for none; whether it comes close to a limit position."""
     is_rigid_triangle = False
-    """Whether its links never turn against the link that carries all joints it hangs on, if that is one."""
+    """Whether its links never turn relative to the single link that carries all joints it is attached to."""
     knots: Any = ()
     """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
     outlines: Any = EMPTY
@@ -344,7 +343,7 @@ class Group(Part):
     """Rocker on whose pin it passes change points; "" for none."""
 
     def with_link(self: Any, name, link):
-        """The group with other mass properties of one link, whose field is called as the link but for the label."""
+        """The group with other mass properties of one link; the field has the name of the link without the label."""
         return replace(self, **{self.own_names[name]: link})
 
     def of_links(self, table) -> Any:
@@ -378,7 +377,7 @@ class Group(Part):
     def resolved(self, reactions, scalars=(), demands=None) -> Resolved:
         """Result of `resolve`, from vectors and scalars in the order of `outputs`.
 
-        By default the first vector is all that the group demands, at the joint it hangs on.
+        By default the first vector is the only demand, at the joint that the group is attached to.
         """
         names: dict[bool, list[str]] = {True: [], False: []}
         for name, output in self.outputs.items():
@@ -391,11 +390,11 @@ class Group(Part):
     # Change points
 
     def on_crank(self, throws):
-        """The group as it is on the pins of a crank: what its structure owes to lengths that are not its own."""
+        """The group specialised for the pins of a crank: its structure depends on their lengths too."""
         return self
 
     def beside(self, groups, throws):
-        """The group as it is beside others of a chain, on the pins of a crank: what its structure owes to theirs."""
+        """The group specialised for the other groups of its chain, on the pins of a crank."""
         return self
 
     @property
@@ -405,7 +404,7 @@ class Group(Part):
 
     @property
     def through(self):
-        """Whether it is to pass change points, had it any."""
+        """Whether it would pass change points."""
         return type(getattr(self, "assembly", 1)) is str
 
     def kink(self, throws):
@@ -418,7 +417,7 @@ class Group(Part):
 
 
 class LinkRule(checks.InstanceOf):
-    """Rule of the link of a group, which lies in one plane; a rotor is for the crank."""
+    """Rule of the link of a group, which lies in one plane; only a crank may be a rotor."""
 
     def check(self, value, field=""):
         found, problem = super().check(value, field)

@@ -109,9 +109,9 @@ class Guide(checks.Checked):
 
     @classmethod
     def through(cls, W1, W2):
-        """Guide through two fixed points; its direction and offset are rounded once.
+        """Guide through two fixed points; direction and offset are rounded once.
 
-        Its numbers are `exact` and `guide_offset`; `Guide.at` makes one with an angle to be varied.
+        Its parameters are `exact` and `guide_offset`; use `Guide.at` to vary the angle.
 
         Parameters
         ----------

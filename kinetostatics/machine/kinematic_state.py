@@ -1,7 +1,7 @@
 """Kinematic state of a mechanism: joints and links at its crank angles, and the sense of rotation.
 
-Each group adds its joints and links to a `Placement`, from the crank outwards; groups of a user's own are checked as
-they do. A `Course` holds what is known of a joint's motion without the rounding of its position.
+Each group adds its joints and links to a `Placement`, from the crank outwards; a user's own groups are checked as they
+do. A `Course` describes a joint's motion without the rounding of its position.
 
 The sense of rotation is +1 counter-clockwise, -1 clockwise: the sign of the crank speed, at rest that of the crank
 acceleration. Friction and loads with values for the return stroke depend on it.
@@ -43,7 +43,7 @@ class Throw(NamedTuple):
 
     @property
     def radius_and_rest(self):
-        """Distance from O, and the rest that rounding took off it."""
+        """Distance from O, and its rounding error."""
         return (self.at[0], None) if self.ahead else length_with_error(self.at)
 
 
@@ -63,7 +63,7 @@ class Orbit(NamedTuple):
 
 
 class Course(NamedTuple):
-    """Motion of a joint that is known without the rounding of its position; None: unknown.
+    """Known motion of a joint, without the rounding of its position; None: unknown.
 
     A pin of the crank has a `throw`, a joint that a link swings about a fixed place a `swing`, one on the crank ray an
     `orbit`. `departure` is the sum of position and second derivative; zero for a throw, and left out.
@@ -83,8 +83,8 @@ class Placement:
     """Mechanism at its crank angles, in tables that the groups fill from the crank outwards.
 
     `ray` is the direction of the crank. `joints` and `links` are by name; `travels` holds coordinates along guides with
-    kinematic coefficients by slider, `courses` a `Course` by joint if it is known, `details` the motion that a group
-    needs again by its first link.
+    kinematic coefficients by slider, `courses` a `Course` by joint if known, `details` the motion that a group
+    needs again, by its first link.
     """
 
     angle: Any
@@ -120,8 +120,8 @@ def place(group, placement):
     except KeyError as error:
         hung = ", ".join(map(repr, group.hangs_on)) or "no joint"
         raise ParameterError(
-            f"{owner} hangs on {hung}, but its place asks for {error}; it finds there what earlier parts of the chain "
-            "place, and what it adds itself"
+            f"{owner} is attached to {hung}, but its place asks for {error}; it finds the joints and links of earlier "
+            "parts of the chain, and its own"
         ) from error
     problems = [
         f"its place must put a {kind.__name__} for the {what} {name!r} into placement.{table}, as its {declaring} "

@@ -9,7 +9,7 @@ so geometry is computed once for all speeds, and rest is no special case. Length
 are unit vectors, moments counter-clockwise. None is a zero that costs nothing.
 
 `Turning`, `Sliding` and `Rolling` are the pairs of a group, by the name of their reaction; a pin is fixed to the link
-that owns its joint. `Slot` and `CamDriven` tell how a joint or link is guided.
+that owns its joint. `Slot` and `CamDriven` describe how a joint or link is guided.
 """
 
 from dataclasses import dataclass
@@ -47,7 +47,7 @@ class Joint(NamedTuple):
 
 
 class LinkMotion(NamedTuple):
-    """Motion of a link: reference joint, direction (unit vector), angular velocity ratio to the crank, slope of that.
+    """Motion of a link: reference joint, direction (unit vector), angular velocity ratio to the crank and its slope.
 
     The ratio is d theta / d phi, its slope d2 theta / d phi2; both None for a link that does not turn.
     """
@@ -148,7 +148,7 @@ def present(value):
 
 
 def arm(direction, along, across):
-    """Vector from a link's reference joint to the point (along, across) of it; None for the joint itself."""
+    """Vector from a link's reference joint to its point (along, across); None for the joint itself."""
     if across is None:
         return scale_vector(along, direction)
     return add_vectors(scale_vector(along, direction), scale_vector(across, left(direction)))
@@ -236,7 +236,7 @@ def load(link, body, speed_squared, crank_acceleration, gravity):
 
 
 def virtual_work(link, wrench):
-    """Work of a wrench per unit of crank angle: the torque at the crank that does the same."""
+    """Work of a wrench per unit of crank angle: the equivalent torque on the crank, N m."""
     return plus(work(wrench.force, link.joint.first), product(wrench.moment, link.ratio))
 
 
@@ -269,7 +269,7 @@ class Sliding(NamedTuple):
 class Rolling(NamedTuple):
     """Roller on a pin of `link` at `joint`, on a curve of the link `against`.
 
-    `force` acts on the roller along the left normal of its way as seen from the curve.
+    `force` acts on the roller along the left normal of its path as seen from the curve.
     """
 
     link: str
@@ -293,7 +293,7 @@ class Meshing(NamedTuple):
 
 class Slide(NamedTuple):
     """Direction of a straight pair (None: +x), d s / d phi of the sliding link along it, and the moment of a unit force
-    along it about the reference joint of what it slides on (None: none).
+    along it about the reference joint of the other link (None: zero).
     """
 
     direction: Any

@@ -1,7 +1,7 @@
-"""A mechanism: a crank and the chain of structural groups that hang on it.
+"""A mechanism: a crank and the chain of structural groups attached to it.
 
-Motion flows along the chain, forces flow back. Names are checked when it is made: a part hangs only on joints of parts
-before it, and no two parts give the same name.
+Motion flows along the chain, forces flow back. The constructor checks the names: a part is attached only to joints of
+earlier parts, and no two parts have the same name.
 """
 
 import math
@@ -54,18 +54,18 @@ class GroupsRule:
 
 
 def _on(group):
-    """Names that a group gives in its field `on`."""
+    """Names in the field `on` of a group."""
     found = getattr(group, "on", "O")
     return found if type(found) is tuple else (found,)
 
 
 NAME_REMEDY = "give the second group another pin, pivot_name or label"
 MARK = 0xE000
-"""First of the characters that stand for texts of a part; none is in use."""
+"""First of the unused characters that replace the texts of a part."""
 
 
 def _spelled(part, table):
-    """Names and entries in a table of a part; of the library's own with repetitions, which a dict drops."""
+    """Names and entries in a table of a part; of the library's own parts with repetitions, which a dict drops."""
     if not part.trusted:
         return list(getattr(part, table).items())
     texts = {field.name: text for field in fields(part) if type(text := getattr(part, field.name)) is str}
@@ -76,7 +76,7 @@ def _spelled(part, table):
 
 
 def name_problems(parts):
-    """Problems of the names in a chain of parts: unknown names, and names given twice."""
+    """Problems of the names in a chain of parts: unknown or repeated names."""
     points: dict[str, str] = {}
     joints: set[str] = set()
     links = [FRAME]
@@ -93,9 +93,9 @@ def name_problems(parts):
     for part in parts:
         kind = type(part).__name__
         for name in (name for name in part.hangs_on if name not in joints):
-            problem = f"{kind} hangs on joint {name!r}, which no part before it places"
+            problem = f"{kind} is attached to joint {name!r}, which no part before it places"
             if name in links:
-                problem = f"{kind} hangs on {name!r}, which is a link; put a Pin on that link, and name its joint"
+                problem = f"{kind} is attached to {name!r}, which is a link; put a Pin on that link, and name its joint"
             elif name == "A":
                 problem += "; give the crank a length, or put a CamRoller before it"
             problems.append(problem)
@@ -103,7 +103,7 @@ def name_problems(parts):
         for name, point in part.joints.items():
             if point.link not in links:
                 found = checks.choice(f"{kind}: link that carries joint {name!r}", point.link, links)
-                problems.append(f"{found}; the part that adds a link stands before what is fixed to it")
+                problems.append(f"{found}; a part that adds a link must come before the parts fixed to it")
         joints.update(part.joints)
         own = [link for link in part.links if link not in points]
         add(points, "joint", kind, [name for name, _ in _spelled(part, "joints")])
@@ -118,7 +118,7 @@ def name_problems(parts):
 
 
 def _table(name, doc):
-    """Cached property: a table of all parts, or all entries of one, from the crank outwards."""
+    """Cached property: the entries of all parts in a table, from the crank outwards."""
 
     def collect(mechanism):
         found = getattr(mechanism.crank, name)
@@ -143,16 +143,16 @@ class Mechanism(Batched):
     Parameters
     ----------
     name : str
-        What messages and figures call it.
+        Name of the mechanism in messages and figures.
     crank : Crank
     groups : tuple
-        `CamRoller`, `SliderGroup`, `Pin` ...; each hangs on a joint, or a pin on a link, that the crank or an earlier
-        group has placed.
+        `CamRoller`, `SliderGroup`, `Pin` ...; each is attached to a joint, or fixed to a link, of the crank or an
+        earlier group.
 
     Raises
     ------
     ParameterError
-        A group hangs on what no part before it places, or two things would have one name: all such problems at once.
+        A group is attached to an unknown joint, or a name appears twice; the message lists all problems.
 
     Examples
     --------
@@ -189,7 +189,7 @@ class Mechanism(Batched):
 
     @cached_property
     def trusted(self):
-        """Whether crank and groups are the library's own, whose forces are known to balance."""
+        """Whether crank and groups are the library's own, whose forces are proven to balance."""
         return all(part.trusted for part in self.parts)
 
     throws = _table("throws", "Pins of the crank by joint, each a `Throw`.")
@@ -211,7 +211,7 @@ class Mechanism(Batched):
 
     @cached_property
     def has_unbounded_reactions(self):
-        """Whether forces may far exceed the balancing torque, which then follows from powers."""
+        """Whether forces may far exceed the balancing torque; the torque then follows from the power balance."""
         return any(group.passes or group.is_close for group in self.groups)
 
     @cached_property
@@ -221,7 +221,7 @@ class Mechanism(Batched):
 
     @property
     def has_planes(self):
-        """Whether a part has a plane: then there are rocking moment and torques of the shaft."""
+        """Whether a part has a plane, so that a rocking moment and torques of the shaft exist."""
         return any(part.plane is not None for part in (self.crank.link, *self.groups))
 
     @property
@@ -233,13 +233,13 @@ class Mechanism(Batched):
 
     @property
     def led_by_ground(self):
-        """Groups that a cam fixed to the frame leads."""
+        """Groups driven by a cam on the frame."""
         return tuple(group for group in self.groups if any(led.body == FRAME for led in group.led))
 
     def grows(self, name):
-        """Whether a force grows without bound at change points: of a group that passes them, or on its crank's pivot.
+        """Whether a force, of a group that passes change points or at O, grows without bound at change points.
 
-        So do the opposite forces on the frame, and then their sum loses its digits.
+        The opposite forces on the frame also grow, and their sum loses its digits.
         """
         parts = [group for group in self.groups if group.passes]
         if not parts or name == "balancing_torque":
@@ -296,7 +296,7 @@ class Mechanism(Batched):
 
     @cached_property
     def slider(self):
-        """Default slider: the only one, or the only one without a label; None without such."""
+        """Default slider: the only one, or the only one without a label; else None."""
         bare = [name for name in self.guides if name == self.own_names[name]]
         found = bare if len(bare) == 1 else list(self.guides)
         return found[0] if len(found) == 1 else None
@@ -311,12 +311,12 @@ class Mechanism(Batched):
 
     @cached_property
     def hints(self):
-        """Sentences on values that look like another unit's."""
+        """Sentences on values that look like values in other units."""
         return plausibility.mechanism_hints(self)
 
     @cached_property
     def extent(self):
-        """Sum of all lengths, places of mass centres among them, m."""
+        """Sum of all lengths, including the coordinates of mass centres, m."""
         found = [abs(length) for part in self.parts for length in part.lengths if present(length) is not None]
         return sum(found[1:], found[0]) if found else 0.0
 
@@ -376,7 +376,7 @@ class Mechanism(Batched):
 
 
 def output_problems(part, resolved):
-    """Yield results of a group that it does not declare, and declared ones that it lacks."""
+    """Yield undeclared results of a group, and declared results that are missing."""
     kind = type(part).__name__
     if not isinstance(resolved, Resolved):
         yield f"{kind}: its resolve must return a Resolved(reactions, scalars, demands), got {checks.shown(resolved)}"

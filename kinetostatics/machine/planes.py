@@ -4,12 +4,12 @@ The library is planar. A machine with several throws has a plane for each, at a 
 points to the viewer as x and y do in the drawing. Motion, reactions and torque do not depend on it; the moment that
 rocks the frame, the reactions of two bearings and the torque between throws do (`mechanics.shaft`).
 
-    group     its `plane`; else that of the pin of the crank, or of the group, that it hangs on; else 0
+ group     its `plane`; else the plane of the crank pin or group to which it is attached; else 0
     pin       of the crank: its `plane`, or free for groups of several planes, as A is; of another link: that link's
     crank     that of its mass centre if its link is a `Rotor`; else 0
 
-A group moves in the plane of what it hangs on: pins do not tilt. So a group on another one, or on a pin with a plane,
-may repeat that plane, and no other is accepted. Weight and loads on a link act in its plane.
+A group moves in the plane of its joint, because pins do not tilt. A group on another group or on a pin with a plane
+may repeat that plane; any other plane is an error. Weight and loads on a link act in its plane.
 """
 
 from typing import Any
@@ -22,7 +22,7 @@ from .group import CRANK, FRAME
 
 
 def _stated(groups):
-    """Pairs of a group and its planes: its own and those of what it hangs on, without the unknown."""
+    """Pairs of a group and its known planes: its own and those of the parts to which it is attached."""
     joints: dict[str, Any] = {}
     links: dict[str, Any] = {}
     for group in groups:
@@ -46,13 +46,13 @@ def planes_by_link(mechanism):
 
 
 def plane_problems(mechanism):
-    """Yield the problem of each part whose plane is not that of what it hangs on."""
+    """Yield the problem of each part whose plane differs from the plane of the part that carries it."""
     for group, stated in _stated(mechanism.groups):
         values = list(filter(checks.has_known_values, stated))
         if other := [value for value in values[1:] if not np.array_equal(values[0], value)]:
             kind = type(group).__name__
             what = next(iter(group.links), getattr(group, "name", kind))
             yield (
-                f"{kind}: {what} has plane {checks.shown(values[0])} m, but what it hangs on has plane "
+                f"{kind}: {what} has plane {checks.shown(values[0])} m, but the part that carries it has plane "
                 f"{checks.shown(other[0])} m; give the plane once, to the pin of the crank or to the group on it"
             )

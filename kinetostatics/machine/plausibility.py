@@ -1,4 +1,4 @@
-"""Hints at probable slips: values in other units, sliders that stand still, loads that act beside a rod.
+"""Hints at probable mistakes: values in other units, sliders that stand still, loads that act beside a rod.
 
 Each function returns or yields sentences; the values are used as given.
 """
@@ -29,11 +29,12 @@ MAX_LENGTH_RATIO = 2000.0
 MAX_PIN_SPEED = 60.0
 """Largest plausible speed of a crank's pin, m/s: racing engines reach 50."""
 MIN_MASS = 1e-75
-"""Mass, kg, in place of none in a batch of springs with and without."""
+"""Mass, kg, that replaces zero in a batch of springs with and without mass."""
 MAX_PEAK_DISTANCE = np.radians(60.0)
 """Distance of the largest force of a table on a slider from a dead centre beyond which its zero may be missing, rad."""
-PEAK_SHARE = 0.99
-"""Share of the largest force from which a row belongs to the peak."""
+PEAK_SHARE, MAX_PEAK_WIDTH, MAX_SUCTION = 0.99, np.radians(90.0), 0.2
+"""Of an indicator diagram: share of the largest force from which rows belong to its peak, largest width of the peak at
+half its height, rad, and largest share of forces of the other sign."""
 RATE_STEP = np.radians(5.0)
 RATE_ANGLES = 1e-3 + RATE_STEP * np.arange(73)
 """Crank angles between which the dead centres of a slider are expected, rad, and their step."""
@@ -64,7 +65,7 @@ def mechanism_hints(mechanism):
 
 
 def scene_hints(mechanism, crank_speed, numbers):
-    """Hints of the mechanism and of its drive, and on `numbers`: path, value and usual range."""
+    """Hints on the mechanism, its drive and `numbers`: path, value and plausible range."""
     longest = max((_most(bar.length) for bar in mechanism.bars if checks.has_known_values(bar.length)), default=0.0)
     hints = [*mechanism.hints]
     hints += [text for path, value, usual in numbers if (text := checks.implausibility(path, value, usual, longest))]
@@ -74,14 +75,14 @@ def scene_hints(mechanism, crank_speed, numbers):
     radius, speed = _most(length), _most(abs(crank_speed))
     if radius * speed > MAX_PIN_SPEED:
         hints.append(
-            f"the pin of the crank goes at {radius * speed:.4g} m/s, faster than in any racing engine; is crank_speed, "
-            f"{speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
+            f"the pin of the crank moves at {radius * speed:.4g} m/s, faster than in any racing engine; is "
+            f"crank_speed, {speed:.6g} rad/s, in rpm? That makes {speed * np.pi / 30.0:.6g} rad/s"
         )
     return hints
 
 
 def needs_look(loads):
-    """Whether loads may get hints that the compiled plausibility test does not look for."""
+    """Whether loads may need hints outside the compiled plausibility test."""
     return any(isinstance(load, GasSpring) for load in loads) or bool(spring_masses(loads))
 
 
@@ -115,7 +116,7 @@ def _surge_hints(mechanism, spring, crank_speed):
         yield (
             f"{spring.title}: its surge ratio is {ratio[worst]:.3g}, below {surge.MIN_RATIO:g}: with "
             f"{mass[worst]:.6g} kg it swings between its ends at {natural[worst]:.4g} rad/s, and harmonic {order:g} of "
-            f"the slider, the highest that matters, drives it at {driven[worst]:.4g} rad/s; waves in the spring, which "
+            f"the slider, the highest that counts, drives it at {driven[worst]:.4g} rad/s; waves in the spring, which "
             f"its `mass` leaves out, change the stiffness of its end by {surge.wave_percentage(ratio[worst])}"
         )
 
@@ -142,12 +143,15 @@ def table_hints(motion):
 
 
 def _peak_hints(motion, load, table):
-    """Hint if the largest force of a table without a zero is far from the dead centres of its slider."""
-    size, lengths = np.abs(table.y), [bar.length for bar in motion.mechanism.bars]
-    if not (size.any() and all(map(checks.has_known_values, lengths))):
+    """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres."""
+    lengths = [bar.length for bar in motion.mechanism.bars]
+    if not (_is_diagram(table) and all(map(checks.has_known_values, lengths))):
         return
-    peaks = table.x[size >= PEAK_SHARE * size.max()]
-    turns_back = np.diff(np.signbit(motion.mechanism.place(RATE_ANGLES).travels[load.on].first))
+    peaks = table.x[table.y / table.largest >= PEAK_SHARE]
+    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first
+    if not checks.has_known_values(rate):
+        return
+    turns_back = np.diff(np.signbit(rate))
     stops = RATE_ANGLES[:-1] if turns_back.ndim > 1 else RATE_ANGLES[:-1][turns_back]
     if turns_back.ndim == 1 and np.any(_turn_distance(peaks[:, None], stops) < MAX_PEAK_DISTANCE - RATE_STEP):
         return
@@ -158,13 +162,22 @@ def _peak_hints(motion, load, table):
     distance = _turn_distance(peaks[:, None], angles[:, None]).min(axis=(1, 2))
     far = np.flatnonzero(distance > MAX_PEAK_DISTANCE)
     if far.size:
-        top, bottom = np.degrees(angles[far[0]])
+        top, bottom = np.degrees(angles[far[0]]) % 360.0
         yield (
             f"{load.title}: the largest value of its table, {table.largest:.6g} N at {np.degrees(peaks[0]):.4g} deg, "
             f"is {np.degrees(distance[far[0]]):.4g} deg from the dead centres of {load.on!r}, TDC at {top:.4g} deg and "
             f'BDC at {bottom:.4g} deg; is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
             "is the crank angle from +x"
         )
+
+
+def _is_diagram(table):
+    """Whether a table over the angle has one short peak, and little of the other sign."""
+    x, (y,) = table.closed()
+    if not table.largest or (y / table.largest).min() < -MAX_SUCTION:
+        return False
+    above = np.interp(np.linspace(x[0], x[-1], 720), x, y / table.largest) > 0.5
+    return above.mean() * table.period < MAX_PEAK_WIDTH
 
 
 def _turn_distance(angle, other):
@@ -197,10 +210,10 @@ def loads_beside_rods(mechanism, loads):
 def compared_sizes(mechanism):
     """Numbers that the compiled plausibility test compares.
 
-    In turn all lengths together, those of which the shortest counts, the bars, pairs of inertia and mass, triples of
-    them and the length of a bar, and pairs of a bar's length and how far that is from the arm of its inner joint. There
-    are no hints of the mechanism where no bar is as long as its arm, the longest is neither huge nor huge beside the
-    shortest, and no inertia is small even beside that bar, or large.
+    In order: all lengths together; the lengths whose shortest one counts; the bars; pairs of inertia and mass; triples
+    of inertia, mass and bar length; pairs of a bar's length and its distance from the arm of its inner joint. The
+    mechanism has no hints if no bar is as long as its arm, the longest length is neither huge nor huge relative to the
+    shortest, and no inertia is small relative to that bar, or large.
     """
     reaches = [reach for part in mechanism.parts for reach in part.reaches]
     bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
@@ -215,9 +228,9 @@ def compared_sizes(mechanism):
 
 
 def _still(mechanism):
-    """Yield a hint for each slider that stands still all over the turn.
+    """Yield a hint for each slider that does not move over the turn.
 
-    That takes a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
+    This needs a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
     """
     for bar, slider, away in _on_arms(mechanism):
         are_known = checks.has_known_values(away) and checks.has_known_values(bar.length)
@@ -232,7 +245,7 @@ def _still(mechanism):
 
 
 def _on_arms(mechanism):
-    """Bars from a joint on a link that turns about a fixed pivot to a slider, with that and the joint's arm, m."""
+    """Bars from a link about a fixed pivot to a slider, with the slider and the arm of the bar's inner joint, m."""
     for bar in mechanism.bars:
         arm, slider = (mechanism.joints[end].link for end in (bar.start, bar.end))
         if slider in mechanism.guides and arm != FRAME and mechanism.joints[mechanism.references[arm]].link == FRAME:
@@ -271,7 +284,7 @@ def single_angle_hints(angle):
     if not TWO_TURNS <= abs(angle) <= 1080.0 or not _whole(angle):
         return ()
     return (
-        f"the crank angle {angle:g} looks like degrees; it is taken as {angle:g} rad, and {angle:g} deg are "
+        f"the crank angle {angle:g} looks like degrees; it is used as {angle:g} rad; {angle:g} deg is "
         f"np.radians({angle:g})",
     )
 
@@ -280,7 +293,7 @@ def angle_hints(angle, given=None):
     """Hint if crank angles look like degrees, like radians converted twice, or, as `given`, like a number of them."""
     if isinstance(given, int | np.integer) and given >= TWO_TURNS:
         return (
-            f"{given} is taken as one crank angle, {given} rad; for {given} of them over the turn give "
+            f"{given} is used as one crank angle, {given} rad; for {given} of them over the turn give "
             f"np.linspace(0, 2 * np.pi, {given}, endpoint=False), for degrees np.radians({given})",
         )
     if not isinstance(angle, np.ndarray) or angle.dtype.char == "O" or not angle.size:
@@ -295,8 +308,8 @@ def angle_hints(angle, given=None):
             return ()
         text = " and ".join(f"{angle:g}" for angle in row.tolist())
         if row.size == 1:
-            return (f"the crank angle {text} looks like degrees; it is taken as radians",)
-        return (f"crank angles {text} look like degrees; they are taken as radians",)
+            return (f"the crank angle {text} looks like degrees; it is used as radians",)
+        return (f"crank angles {text} look like degrees; they are used as radians",)
     step, reach = row[1] - row[0], row[-1] - row[0]
     if not np.all(abs(np.diff(row) - step) <= 1e-9 * abs(step)):
         return ()
@@ -308,7 +321,7 @@ def angle_hints(angle, given=None):
         words = f"by {step:g} look like degrees"
     if not is_turn:
         return ()
-    return (f"crank angles from {row[0]:g} to {row[-1]:g} {words}; they are taken as radians",)
+    return (f"crank angles from {row[0]:g} to {row[-1]:g} {words}; they are used as radians",)
 
 
 def _whole(number):

@@ -9,6 +9,7 @@ from collections import Counter
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
+from ..numbers.formatting import repr_with_units
 from ..numbers.planar import minus, subtract_vectors
 from .group import FRAME
 from .links import CamDriven, Rolling
@@ -20,13 +21,15 @@ MOTOR = "motor"
 class Support(NamedTuple):
     """Force (x, y) and couple of the machine on the frame, N and N m, and the point at which the force acts, m.
 
-    A kernel leaves out what is zero as None; `Solution.ground` gives arrays (2, ..., N), (2, ..., N) and (..., N).
-    Of a pair also those on its link.
+    Kernels give None for zero; `Solution.ground` gives arrays (2, ..., N), (2, ..., N) and (..., N). A pair also has
+    the force and couple on its link.
     """
 
     force: Any
     point: Any
     couple: Any = None
+
+    __repr__ = repr_with_units(force="N", point="m", couple="N m")
 
     def opposite(self):
         """The opposite force and couple at the same point."""
@@ -34,7 +37,7 @@ class Support(NamedTuple):
 
 
 class Joining(NamedTuple):
-    """A pair of a `part`: its force acts on `link`, the opposite on the link `against` it; a cam as its `CamDriven`."""
+    """A pair of a `part`: its force acts on `link`, the opposite force on `against`; a cam is a `CamDriven`."""
 
     part: Any
     pair: Any
@@ -90,5 +93,5 @@ def places(scene) -> dict[str, Place]:
 
 
 def _is_on_frame(name, joining):
-    """Whether the frame takes the force of a pair; that of a group of a user's own needs a reaction."""
+    """Whether the frame takes the force of a pair; a pair of a user's own group needs a reaction."""
     return joining.against == FRAME and (isinstance(joining.pair, CamDriven) or name in joining.part.outputs)

@@ -58,7 +58,7 @@ def free_body(dynamics, link) -> tuple[Action, ...]:
     Raises
     ------
     QuantityError
-        There is no such link; the message lists those there are.
+        The link is unknown; the message lists the known ones.
     ParameterError
         A group of the user's own declares pairs whose forces do not balance a link.
     """

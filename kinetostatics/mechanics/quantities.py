@@ -195,7 +195,7 @@ def components(solution, name):
     Raises
     ------
     QuantityError
-        The solution has no such quantity.
+        The solution does not have the quantity.
 
     Examples
     --------

@@ -146,6 +146,11 @@ def base_factor(given):
     return factor(given, given)
 
 
+def base_dimensions(unit):
+    """Powers of the base units in a unit, a frozenset of (name, power); `ValueError` for an unknown unit."""
+    return frozenset(_base(unit, unit)[1].items())
+
+
 @cache
 def _base(given, unit):
     """Factor to base units, and their powers by name; the message names the wanted `unit`."""

@@ -1,6 +1,6 @@
 """Bearings of pins: equivalent load and rating life by relative rotation, rings, pressure and pv of plain bearings.
 
-Loads count by the relative rotation w_rel of the rings (ISO 281:2007; Harris, *Rolling Bearing Analysis*, 2006):
+Loads are weighted by the relative rotation w_rel of the rings (ISO 281:2007; Harris, *Rolling Bearing Analysis*, 2006):
 
     P = (int |F|^p |w_rel| dphi / int |w_rel| dphi)^(1/p),    L10 = 1e6 (C/P)^p turns of the rings, both ways
 """
@@ -30,12 +30,12 @@ NUMBERS = {
     **dict.fromkeys(("diameter", "width"), ("m", POSITIVE)),
 }
 ROLLER, BALL_EXPONENT = "roller", 3.0
-"""Name of a cam's roller, as a bearing and as the ring that turns with it; p of ball bearings, and 10/3 of rollers."""
+"""Name of a cam's roller, as a bearing and as a rotating ring; exponent p of ball bearings and of roller bearings."""
 LEAST_SHARES, MAX_SHARE = (0.01, 0.02), 0.5
-"""Least load over C at which balls, and rollers, do not slide (SKF, 2018); P over C up to which ISO 281 rates life."""
+"""Least load over C at which balls, or rollers, do not slide (SKF, 2018); largest P over C with a life by ISO 281."""
 POINT_SHARE, FEW_ELEMENTS, MIN_TURNS = np.pi / 4, 12, 1e-9
-"""Share of point load where a turning load is as large as a fixed one; rolling elements of a small bearing; turns of a
-pin in a turn of the crank, and net share of its travel, that are rounding."""
+"""Share of point load where a rotating load is as large as a fixed one. Rolling elements of a small bearing. Turns of a
+pin per turn of the crank, and net share of its travel, that count as rounding."""
 
 
 class BearingPin(NamedTuple):
@@ -47,7 +47,7 @@ class BearingPin(NamedTuple):
     radius: Any = None
 
     def load(self, at):
-        """Load on the first ring, (2, N), N; of a roller without mass the opposite of the cam's force."""
+        """Load on the first ring, (2, N), N; for a massless roller the opposite of the cam's force."""
         force = at.as_vector(pair_forces(at, self.name, self.joining)[self.name].force)
         return -force if self.radius else force
 
@@ -67,7 +67,7 @@ class BearingPin(NamedTuple):
         return turning + side * np.hypot(*velocity) / self.radius
 
     def in_rings(self, at):
-        """Load on each ring in its own axes, (2, 2, N), N; NaN for those of a roller, which never repeat."""
+        """Load on each ring in its own axes, (2, 2, N), N; NaN for a roller, whose loads never repeat."""
         found = np.stack([self.load(at), -self.load(at)])
         for row, ring in enumerate(self.rings):
             if ring == ROLLER:
@@ -90,10 +90,10 @@ class Bearing(Sized):
         "largest_load": Row("N", "over the turn", "|F|"),
         "smallest_load": Row("N", "over the turn", "|F|"),
         "needed_load": Row("N", "least load to roll without sliding", "0.01 C ball, 0.02 C roller (SKF 2018)"),
-        "relative_turns": Row("1", "of the rings, both ways, in one of the crank", "int |w_rel| dphi / (2 pi omega)"),
-        "life_turns": Row("1", "turns of the crank that 90 % outlive", "1e6 (C/P)^p / relative turns, ISO 281"),
+        "relative_turns": Row("1", "turns of the rings, both ways, per crank turn", "int |w_rel| dphi / (2 pi omega)"),
+        "life_turns": Row("1", "turns of the crank with 90 % survival", "1e6 (C/P)^p / relative turns, ISO 281"),
         "life_hours": Row("h", "at the crank speed of the solution", "life_turns 2 pi/(3600 omega)"),
-        "oscillation": Row("rad", "amplitude of a pin that swings, inf of one that turns", "half its range"),
+        "oscillation": Row("rad", "amplitude of a swinging pin, inf if it turns", "half its range"),
         "static_safety": Row("1", "against indentation", "C0/largest load, ISO 76:2006"),
         "point_share": Row("1", "of the ring on the first link; 1 point load", "|mean of F| / mean of |F|, its axes"),
         "point_share_against": Row("1", "of the ring on the other link", "|mean of F| / mean of |F|, its axes"),
@@ -116,7 +116,7 @@ class Bearing(Sized):
     def ring_loads(self):
         """Load by link, "point" or "circumferential or indeterminate" (DIN 5425-1); empty without load.
 
-        Point load where its share exceeds pi/4: a fixed load then exceeds one that turns. Other rings fit tightly.
+        A share above pi/4 means point load: a fixed load then exceeds a rotating one. Other rings need a tight fit.
         """
         shares = (self.point_share, self.point_share_against) if self.largest_load else ()
         words = ("point" if share > POINT_SHARE else "circumferential or indeterminate" for share in shares)
@@ -130,12 +130,12 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     ----------
     solution : Solution
     joint : str
-        Reaction of a pin, "O", "A" ...; "roller" is the pin of a massless roller that rolls on its cam ("cam roller",
-        "contact2 roller" ... of several).
+        Reaction of a pin, "O", "A" ...; "roller" is the pin of a massless roller that rolls on its cam. With several
+        cams: "cam roller", "contact2 roller" ...
     capacity, static_capacity : float
         Dynamic and static load rating C, C0, N.
     exponent : float
-        p, 10/3 of roller bearings, 3 of ball bearings.
+        p: 10/3 for roller bearings, 3 for ball bearings.
 
     Returns
     -------
@@ -144,12 +144,13 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     Raises
     ------
     ParameterError
-        No such pin, or it never turns, or its roller has no radius; gaps; a batch; a crank at rest; an unbounded load.
+        The pin is unknown, never turns, or its roller has no radius. The mechanism has gaps or several designs, the
+        crank is at rest, or the load grows without bound.
 
     Warns
     -----
     HintWarning
-        False brinelling of a pin that swings too little; a load too small for rolling, or beyond the ratings.
+        Danger of false brinelling at a small swing; a load too small for rolling, or beyond the ratings.
 
     Examples
     --------
@@ -165,7 +166,7 @@ def bearing(solution, joint, *, capacity, static_capacity, exponent=10 / 3):
     pin, turn, least, most, rating, static, power = _prepared("bearing", solution, joint, **given)
     load, turns, turned, low, high, *shares = _integrals(pin, turn, most, power)
     if turns < MIN_TURNS:
-        raise ParameterError(f"bearing: at {joint} {' and '.join(pin.rings)} turn together, so nothing rolls there")
+        raise ParameterError(f"bearing: at {joint} {' and '.join(pin.rings)} turn together, without relative rotation")
     swing = 0.5 * (high - low) if abs(turned) < MIN_TURNS * turns * turn.period else np.inf
     needed = LEAST_SHARES[int(power > BALL_EXPONENT)] * rating
     with np.errstate(divide="ignore", over="ignore"):
@@ -205,11 +206,11 @@ def _prepared(owner, solution, joint, **values):
     given = {name: (value, *NUMBERS[name]) for name, value in values.items()}
     numbers = checks.single_numbers(owner, checks.choice("pin joint", joint, tuple(pins)), **given)
     turn, pin = closed_turn(solution, owner), pins[joint]
-    slow = None if np.all(solution.crank_speed) else "the crank stands, so no pin turns; solve it at its crank speed"
-    lacks = f"the turning of {joint} follows from its radius; give the follower or CamRoller a ks.Roller"
+    slow = None if np.all(solution.crank_speed) else "the crank is at rest and no pin turns; solve at its crank speed"
+    lacks = f"the rotation of {joint} follows from its radius; give the follower or CamRoller a ks.Roller"
     checks.require(owner, slow, lacks if pin.rings[0] == ROLLER and pin.radius is None else None)
     least, most = extrema(solution, (lambda at: np.hypot(*pin.load(at))) if pin.radius else pin.name).range
-    endless = None if np.isfinite(most) else f"the load at {joint} grows without bound, so no bearing carries it"
+    endless = None if np.isfinite(most) else f"the load at {joint} grows without bound, so no bearing can carry it"
     checks.require(owner, endless)
     clear = least > TERM_ROUNDING * np.max(turn.even.largest_force_term)
     return pin, turn, least if clear else 0.0, most, *numbers.values()
@@ -240,12 +241,12 @@ def _integrals(pin, turn, most, power):
 
 
 def equivalent_load(loads, shares, exponent=10 / 3):
-    """Constant load of the same life as loads in steps, N.
+    """Constant load with the same life as loads in steps, N.
 
     Parameters
     ----------
     loads, shares : sequence of float
-        Loads, N; turns of the bearing under each, in any unit.
+        Loads, N, and turns of the bearing under each of them, in any unit.
     exponent : float
         As for `bearing`.
 
@@ -272,7 +273,7 @@ def equivalent_load(loads, shares, exponent=10 / 3):
         found.append(numbers)
         problems += [problem, f"{name} must not be negative, got {numbers.min():g}" if np.any(numbers < 0.0) else None]
     if not any(problems) and (found[0].size != found[1].size or not np.any(found[1])):
-        problems.append("shares must be as many as loads, one of them greater than 0")
+        problems.append("shares and loads must be equal in number, with a share greater than 0")
     power = checks.single_numbers("equivalent_load", *problems, exponent=(exponent, *NUMBERS["exponent"]))["exponent"]
     largest = found[0].max() or 1.0
     return float(largest * np.average((found[0] / largest) ** power, weights=found[1]) ** (1.0 / power))

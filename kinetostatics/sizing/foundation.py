@@ -1,12 +1,12 @@
 """Vibration of a sprung block that carries the machine, and the force that springs and dampers pass to the ground.
 
-The crank turns at a constant speed relative to the block, so the machine pushes it with the force F on a fixed frame
-(`Solution.ground`), less the inertia of what rides along. With the total mass M, each harmonic n of x, y and turning is
+The crank turns at a constant speed relative to the block. The machine loads the block with the force F on a fixed frame
+(`Solution.ground`), less the inertia of the moving block. With the total mass M, each harmonic n of x, y and turning is
 
     M u'' + C u' + K u = F(t),    X_n = F_n / (K - (n w)^2 M + i n w C)
 
-(Den Hartog, *Mechanical Vibrations*, 1956, chapter 2). In x and y this is exact; in turning the moving links count as
-if they rested in their mean place, and the resultant of the springs passes through the centre of mass.
+(Den Hartog, *Mechanical Vibrations*, 1956, chapter 2). In x and y this is exact. For rotation the moving links count as
+fixed in their mean position, and the resultant of the springs passes through the centre of mass.
 """
 
 from collections import namedtuple
@@ -24,7 +24,7 @@ from ..numbers import checks
 from .result import Row, Sized, warn_of_notes
 
 Machine = namedtuple("Machine", "speed order force mass acceleration")
-"""Harmonics (3, N) of a machine's force on the frame and moment about the centre, by order; its own numbers."""
+"""Harmonics (3, N) of a machine's force on the frame and moment about the centre, by order, with its numbers."""
 NUMBERS = {
     "mass": ("kg", POSITIVE),
     "inertia": ("kg*m**2", POSITIVE),
@@ -33,19 +33,19 @@ NUMBERS = {
     "v_rms": ("m/s", POSITIVE),
     "tuning": ("1", POSITIVE),
 }
-"""Unit and rule of each number; `stiffness` and `damping` may be lists of up to three, that of turning in N m/rad."""
+"""Unit and rule of each number; `stiffness` and `damping` may be lists of up to three, for rotation in N m/rad."""
 HARMONICS, POINTS, REACH = 256, 24, 12.0
 """Harmonics of a period; points of a piece, and its width times the highest harmonic, rad."""
 NEGLIGIBLE, RESONANT = 1e-13, 1e-9
-"""Size of a harmonic relative to the largest that is left out; distance from resonance relative to its frequency."""
+"""Largest neglected harmonic, relative to the largest harmonic; distance from resonance relative to its frequency."""
 MAX_TAIL, MAX_COUPLING = 1e-3, 0.05
-"""Largest share of v_peak above the last harmonic, and acceleration of the block over the machine's, without a note."""
+"""Largest values without a note: v_peak above the last harmonic, relative; acceleration of block over machine."""
 BLOW_STEP, MAX_JUMP = 1e-6, 1e-3
-"""Crank angle beside a kink or limit position, rad; change of velocity over speed and lengths that is no blow."""
+"""Distance from a kink or limit position, rad; largest relative jump of velocity that is no shock."""
 WAYS = {"x": ("m", "N"), "y": ("m", "N"), "turn": ("rad", "N m")}
 """Directions of the block, with units of motion and load."""
 ROWS = {
-    "mass": Row("kg", "block, frame and moving links in all", "given; of block_for: v rms of 1 kg / v rms allowed"),
+    "mass": Row("kg", "block, frame and moving links together", "given; of block_for: v rms of 1 kg / v rms allowed"),
     "tuning": Row("1", "lowest natural frequency / crank speed", "sqrt(K / M) / w"),
     "v_rms": Row("m/s", "largest rms velocity in x or y, at the centre or at O", "sqrt(sum |n w X_n|^2 / 2)"),
     "v_peak": Row("m/s", "largest velocity in x or y, at the centre or at O", "peak of sum Re(i n w X_n e^(i n phi))"),
@@ -67,19 +67,19 @@ for _way, (_unit, _load) in WAYS.items():
 class Mount(Sized):
     """Vibration of a block with its machine, as `ks.sizing.mount` and `ks.sizing.block_for` return it.
 
-    A direction that is held has no velocity and passes its load on whole. Loads are dynamic: weights and other means
-    over the period are left out.
+    A blocked direction has no velocity and transmits its full load. Loads are dynamic: weights and other means over the
+    period are left out.
 
     Attributes
     ----------
     numbers : dict
-        Value by name, as in `table()`; each is an attribute too.
+        Value by name, as in `table()`; each is also an attribute.
     order : array (N,)
-        Multiples of the crank speed, whole unless a load takes several turns.
+        Multiples of the crank speed, whole numbers unless a load repeats after several turns.
     crank_speed : float
         rad/s.
     force, displacement, ground_force : array (3, N) of complex
-        Amplitudes X_n in x, y, turning, N, N m, m, rad; values are sums of Re(X_n e^(i n phi)) at crank angles phi.
+        Amplitudes X_n in x, y, rotation; N, N m, m, rad. Values are sums of Re(X_n e^(i n phi)) at crank angles phi.
         Force on a fixed frame, displacement of the centre, force on the ground.
 
     Examples
@@ -121,17 +121,17 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     Parameters
     ----------
     solution : Solution
-        Of one design at constant speed; its crank angles do not matter.
+        One design at constant speed; its crank angles have no effect.
     mass : float
-        Of block, frame and moving links together, kg.
+        Mass of block, frame and moving links together, kg.
     stiffness : float or list of up to three floats
-        Of the springs in x, y, N/m, and turning, N m/rad. Directions left out are held.
-    damping : float or list of as many floats
+        Stiffness of the springs in x, y, N/m, and rotation, N m/rad. Omitted directions are blocked.
+    damping : float or list with the same length
         Ratio to the critical damping of each direction, c / (2 sqrt(k m)).
     inertia : float, optional
-        Moment of inertia of all about the centre, kg m2; given with the stiffness of turning.
+        Total moment of inertia about the centre, kg m2; given together with the stiffness of rotation.
     centre : (x, y)
-        Mean centre of mass of all, m, in the axes of the machine; the springs' resultant passes through it.
+        Mean position of the common mass centre, m, in the axes of the machine; the springs' resultant acts there.
 
     Returns
     -------
@@ -146,11 +146,11 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     Warns
     -----
     HintWarning
-        The block's acceleration is beyond 5 % of the machine's; or the force jumps, and harmonics above 256 count.
+        The block's acceleration exceeds 5 % of the machine's; or the force jumps and harmonics above 256 matter.
 
     Examples
     --------
-    The saw of the case on 30 t: an example of no gain, not a foundation, as good ones stay within 1 to 7 mm/s.
+    The saw of the case on 30 t. The result shows little gain: good foundations stay within 1 to 7 mm/s.
 
     >>> import kinetostatics as ks
     >>> saw = ks.load_case("sawframe_2r63").solve("cam-circle", 90)
@@ -166,8 +166,8 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
     few, alike, both = 0 < count <= len(WAYS), len(ratios) == count, (count == len(WAYS)) == (inertia is not None)
     problems = [
         None if few else f"stiffness must be a number or a list of up to three, got {checks.shown(stiffness)}",
-        None if alike else f"damping must be a list of as many as of stiffness, {count}, got {checks.shown(damping)}",
-        None if both else "inertia and a third stiffness, that of turning, must be given together",
+        None if alike else f"damping must be a list of {count} numbers like stiffness, got {checks.shown(damping)}",
+        None if both else "inertia and a third stiffness, for rotation, must be given together",
     ]
     given = {"mass": (mass, *NUMBERS["mass"])}
     if inertia is not None:
@@ -186,30 +186,31 @@ def mount(solution, *, mass, stiffness, damping, inertia=None, centre=(0.0, 0.0)
 
 
 def block_for(solution, *, v_rms, tuning=0.5, damping=0.1):
-    """Block whose rms velocity in x and y is as allowed, on springs tuned to a share of the crank speed.
+    """Block with an allowed rms velocity in x and y, on springs tuned to a ratio of the crank speed.
 
-    At given tuning and damping the velocity is inverse to the mass. Turning is held: check it by `mount`.
+    At given tuning and damping the velocity is inversely proportional to the mass. Rotation is blocked; check it by
+    `mount`.
 
     Parameters
     ----------
     solution : Solution
-        Of one design at constant speed.
+        One design at constant speed.
     v_rms : float
         Largest rms velocity in x or y, m/s.
     tuning : float
         Natural frequency in x and y over the crank speed.
     damping : float
-        Ratio to the critical one.
+        Ratio to the critical damping.
 
     Returns
     -------
     Mount
-        With the mass in all.
+        Vibration with the total mass.
 
     Raises
     ------
     ParameterError
-        As `mount`; or the moving links alone are heavy enough.
+        As for `mount`; or the mass of the moving links is already sufficient.
 
     Examples
     --------
@@ -229,7 +230,7 @@ def block_for(solution, *, v_rms, tuning=0.5, damping=0.1):
 
     mass = block(1.0).v_rms / found["v_rms"]
     if mass <= machine.mass:
-        words = f"{mass:.6g} kg keep v_rms, and the moving links alone have {machine.mass:.6g} kg"
+        words = f"{mass:.6g} kg suffice for v_rms, and the moving links already have {machine.mass:.6g} kg"
         raise ParameterError(f"block_for: no block is needed: {words}")
     return warn_of_notes("block_for", block(mass))
 
@@ -239,13 +240,13 @@ def _machine(owner, solution, centre):
     turn = closed_turn(solution, owner)
     speed = np.unique(solution.crank_speed)
     if speed.size != 1 or not speed[0] or np.any(solution.crank_acceleration):
-        raise ParameterError(f"{owner}: takes a machine at a constant crank speed other than 0, without acceleration")
+        raise ParameterError(f"{owner}: needs a machine at a constant crank speed other than 0, without acceleration")
     edges, size = turn.pieces.edges, abs(speed * solution.mechanism.extent)
     before, after = (turn.at.moved_to(edges + side * BLOW_STEP) for side in (-1.0, 1.0))
     for joint in solution.mechanism.joints:
         blows = edges[np.any(abs(after.velocity(joint) - before.velocity(joint)) > MAX_JUMP * size, axis=0)]
         if blows.size:
-            words = f"changes its velocity at once at {np.degrees(blows[0]):.6g} deg, a blow on the frame"
+            words = f"changes its velocity at once at {np.degrees(blows[0]):.6g} deg, a shock on the frame"
             raise ParameterError(f"{owner}: {joint} {words}")
 
     def wrench(angle):
@@ -302,7 +303,7 @@ def _mount(owner, machine, masses, springs, ratios, centre):
     numbers = dict(zip(ROWS, map(float, np.append(own, [*rows])), strict=True))
     notes = []
     if coupling > MAX_COUPLING:
-        words = "reactions and torque, computed on a fixed frame, are off by about as much"
+        words = "reactions and torque, computed on a fixed frame, have errors of about this size"
         notes.append(f"the block's acceleration is {100.0 * coupling:.3g} % of the machine's; {words}")
     tail = HARMONICS * np.max(np.abs(velocity[straight, 3 * HARMONICS // 4 :]), initial=0.0)
     if tail > MAX_TAIL * numbers["v_peak"]:

@@ -1,4 +1,4 @@
-"""Parts by name: what a case file lists under [sizing], and what sweeps, tolerance studies and searches ask of them."""
+"""Parts by name, from [sizing] of a case file, and their numbers for sweeps, tolerance studies and searches."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -18,9 +18,9 @@ from . import bearings, foundation, play, scene_springs, sections, springs
 BAR = tuple(inspect.signature(Bar).parameters)
 """Options that describe the bar of a link."""
 NOT_OPTIONS, OF_THE_SCENE = ("solution", "bar", "options"), ("stiffness", "travel", "crank_speed")
-"""Arguments that a part does not give; those of a spring that follow from its scene."""
+"""Arguments that are no options of a part; those of a spring that follow from its scene."""
 LIST_LENGTH = 3
-"""Most numbers of one option: x, y, turning."""
+"""Largest number of values of an option: x, y, rotation."""
 
 
 def _bar_strength(solution, *, link, **options):
@@ -42,7 +42,7 @@ class Kind(NamedTuple):
 
     @property
     def options(self):
-        """Name of each option, and whether a part must give it."""
+        """Name of each option, and whether it is required."""
         return {
             name: item.default is item.empty
             for source in (self.size, *self.sources)
@@ -69,7 +69,7 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Part:
-    """A part of a machine that is to be sized, by name.
+    """A named part of a machine to be sized.
 
     Parameters
     ----------
@@ -77,14 +77,14 @@ class Part:
     kind : str
         "bearing", "plain bearing", "bar", "pin", "play", "spring", "mount" or "block".
     options : mapping
-        Arguments of the function of `sizing` that sizes it; of a bar also those of `Bar`.
+        Arguments of the `sizing` function of its kind; for a bar also those of `Bar`.
     raw : mapping, optional
         Its table in a case file.
 
     Raises
     ------
     ParameterError
-        There is no such kind, an option is not one of it, or one is missing.
+        The kind is unknown, or an option is unknown or missing.
 
     Examples
     --------
@@ -119,16 +119,16 @@ class Part:
         return [*filter(None, wrong), *missing]
 
     def of(self, solution):
-        """The part's size, a `Sized`, from a solution."""
+        """Result of sizing the part from a solution, a `Sized`."""
         return KINDS[self.kind].size(solution, **self.options)
 
     @property
     def rows(self):
-        """Row of each number of its size by name: unit, meaning, formula."""
+        """Row of each number of the result by name: unit, meaning, formula."""
         return KINDS[self.kind].result.ROWS
 
     def number(self, number, ratio=False):
-        """A number of its size as output of `sweep`, `tolerances` and `design.optimise`: "life_hours" of a bearing."""
+        """A number of the result, such as "life_hours", as an output of `sweep`, `tolerances` and `design.optimise`."""
         rows = self.rows
         checks.require(self.name, checks.choice("number", number, tuple(rows)))
         return SolutionNumber(f"{self.name}.{number}", partial(_number, self, number), rows[number].unit, ratio)
@@ -145,7 +145,7 @@ def _number(part, number, solution):
 def read_part(name, raw):
     """Part of a table of a case file, and the faults of the table: sentences after their keys.
 
-    Numbers are texts with units, as everywhere in case files.
+    Numbers are texts with units, as in all case files.
     """
     options = dict(raw)
     kind, problems = options.pop("kind", None), []
@@ -163,7 +163,7 @@ def read_part(name, raw):
 
 
 def _in_si(key, value, unit, rule):
-    """Value of an option in SI; a unit of several is that of the numbers in a list, or in each list of a list."""
+    """Value of an option in SI; several units are those of the numbers in a list, or in each inner list."""
     units = unit if isinstance(unit, tuple) else (unit,)
     if isinstance(value, list) and any(isinstance(part, list) for part in value):
         return [_in_si(key, part, unit, rule) for part in value]

@@ -1,14 +1,14 @@
-"""Loss of contact in a joint with play, by the journal as a pendulum in the force of the machine without play.
+"""Loss of contact in a joint with play, with the journal as a pendulum in the joint force without play.
 
 With radial play c in one joint the journal touches its bearing in a direction e(beta); t is a quarter turn ahead. F is
-the force that presses them together without play, M the effective mass against a relative motion r of journal and
+the contact force without play, M the effective mass against a relative motion r of journal and
 bearing with the crank prescribed. To first order in c, by time,
 
     M r'' = F - N e,   r = c e:    M_tt c beta'' = F_t + M_te c beta'^2,    N = F_e + c (M_ee beta'^2 - M_et beta'')
 
-With M = m_e in all directions and the lag d of e behind F, m_e c beta'' = |F| sin d, N = |F| cos d + m_e c beta'^2.
-A unit relative motion moves link i by V_i, so M = sum V_i^T m_i V_i; by virtual work -V_i are the reactions at the
-joint under unit loads on link i.
+With M = m_e in all directions and the lag d of e behind F, m_e c beta'' = |F| sin d, N = |F| cos d + m_e c beta'^2. A
+unit relative motion moves link i by V_i, so M = sum V_i^T m_i V_i. By virtual work -V_i are the reactions at the joint
+under unit loads on link i.
 """
 
 import itertools
@@ -37,21 +37,21 @@ TINY = np.finfo(float).tiny
 ZERO_FORCE, MIN_MASS_RATIO = 1e-9, 1e-9
 """Least over largest force, and principal effective mass, below which the least counts as zero."""
 OFFSETS = np.geomspace(1e-9, 1e-2, 60)
-"""Distances from least forces, rad, at which the index is evaluated too: it is sharpest there."""
+"""Distances from least forces, rad, at which the index is also evaluated, because it peaks there."""
 BEFORE = 1e-5
-"""Crank angle from a zero of a force to where its direction is read, rad."""
+"""Distance from a zero of a force at which its direction is evaluated, rad."""
 TOLERANCE, PERIODIC_TOLERANCE, MAX_PERIODS = 1e-8, 1e-6, 30
-"""Relative error of a step; change of angle (rad) and rate over a period that counts as none; periods until then."""
+"""Relative error of a step; negligible change of angle (rad) and rate over a period; largest number of periods."""
 MAX_SWINGS, MAX_INDEX, MAX_EVALUATIONS = 3000, 0.5, 80_000
-"""Swings of the journal in a period beyond which it lies in the force up to that index; evaluations of its motion."""
-SCREEN = "a screen for one joint with play: it tells where contact is lost and the first landing, not what follows"
+"""Largest number of swings per period; index below which more swings count as rest; evaluations of the motion."""
+SCREEN = "a screen for one joint with play: it gives the loss of contact and the first landing, not the motion after it"
 
 
 class Flight(NamedTuple):
     """A loss of contact: crank angles of leaving and landing, rad, then speed (m/s) and energy (J) of the impact.
 
-    The journal crosses its play freely, M r'' = F. Where it lands with v along the normal n, an impact without rebound
-    takes v^2/(2 n.M^-1.n).
+    The journal crosses its play freely, M r'' = F. A landing with the velocity v along the normal n is an impact
+    without rebound of the energy v^2/(2 n.M^-1.n).
     """
 
     start: float
@@ -62,7 +62,7 @@ class Flight(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactLoss(Sized):
-    """Where a journal leaves its bearing, and how hard it lands; made by `contact_loss`.
+    """Loss of contact of a journal, and its impacts; `contact_loss` returns it.
 
     Attributes
     ----------
@@ -72,10 +72,11 @@ class ContactLoss(Sized):
     reversals : tuple of float
         Crank angles at which the force without play passes through zero, rad.
     flights : tuple of Flight
-        Losses of contact in the order in which they happen.
+        Losses of contact, in order of time.
     angle, force, normal, lag, index_curve : array (N,)
         Crank angle, rad; magnitude of the force without play and normal force of the pendulum, N; angle from journal to
-        force, counter-clockwise, rad; index. After a loss the pendulum, which cannot leave, is no longer the journal.
+        force, counter-clockwise, rad; index. After a loss the pendulum, always in contact, no longer describes the
+        journal.
 
     Examples
     --------
@@ -88,10 +89,10 @@ class ContactLoss(Sized):
 
     ROWS: ClassVar = {
         "index": Row("1", "largest index; contact is lost from about 1", "|dtheta/dt| sqrt(M_tt c/|F|), theta of F"),
-        "earles_wu": Row("rad/s/N^0.5", "the same without mass and play", "|dtheta/dt|/sqrt|F| (Earles, Wu 1977)"),
+        "earles_wu": Row("rad/s/N^0.5", "index without mass and play", "|dtheta/dt|/sqrt|F| (Earles, Wu 1977)"),
         "least_force": Row("N", "least force on the joint without play", "min |F|"),
         "least_normal": Row("N", "least normal force, negative: lost", "F_e + c (M_ee beta'^2 - M_et beta'')"),
-        "effective_mass": Row("kg", "mass across F at the largest index; along F where it reverses", "M = sum V^T m V"),
+        "effective_mass": Row("kg", "mass across F at the largest index; along F at a reversal", "M = sum V^T m V"),
         "lost_angle": Row("rad", "crank angle without contact in a period", "sum of flights, M r'' = F"),
         "impact_speed": Row("m/s", "largest speed of impact", "along the normal, M r'' = F in flight"),
         "impact_energy": Row("J", "largest energy of an impact without rebound", "v^2/(2 n.M^-1.n)"),
@@ -116,23 +117,23 @@ class ContactLoss(Sized):
 
 
 def contact_loss(solution, joint, clearance, damping=0.05):
-    """Whether a joint with play knocks: where its journal leaves the bearing and how hard it lands.
+    """Contact loss in a joint with play: where the journal leaves the bearing, and the impact at its landing.
 
-    A screen: the journal is a pendulum in the turning force of the machine without play (Earles and Wu, *J. Eng. Ind.*
-    99(2), 1977, 375); its periodic motion gives the normal force. Across a direction without mass the journal follows
-    the force, and contact is lost only where the force passes through zero.
+    The method is approximate: the journal is a pendulum in the rotating force without play (Earles and Wu, *J. Eng.
+    Ind.* 99(2), 1977, 375); its periodic motion gives the normal force. Across a direction without mass the journal
+    follows the force, and contact is lost only where the force passes through zero.
 
     Parameters
     ----------
     solution : Solution
-        Of one design; its crank angles do not matter, and its speed counts as constant.
+        One design; its crank angles have no effect, and its speed counts as constant.
     joint : str
         Name of the reaction of a pin: "O", "A", "B" ...
     clearance : float
         Radial play c, half the difference of the diameters, m.
     damping : float
-        Of the journal's oscillation about the direction of the force, relative to critical; divided by 1 + index^2,
-        so that a force that turns fast does not take the journal along. A loss that another damping ends is marginal.
+        Damping ratio of the journal's oscillation about the direction of the force. It is divided by 1 + index^2, so
+        that a fast-turning force does not drag the journal along. A loss that vanishes with other damping is marginal.
 
     Returns
     -------
@@ -141,14 +142,14 @@ def contact_loss(solution, joint, clearance, damping=0.05):
     Raises
     ------
     ParameterError
-        A number is not positive; the joint is no pin, carries no force or has no mass; the crank is at rest; the
-        mechanism does not close all round, or its force grows without bound; the solution is a batch of designs; the
-        journal does not land within a period, or swings too often in it to be followed.
+        A number is not positive, or the solution is a batch of designs. The joint is not a pin, carries no force or has
+        no mass. The crank is at rest, the mechanism does not close all round, or its force grows without bound. The
+        journal does not land within a period, or swings too often in a period.
 
     Warns
     -----
     HintWarning
-        Where the force passes through zero, or that no periodic motion was reached.
+        The force passes through zero, or the motion does not become periodic.
 
     Examples
     --------
@@ -173,12 +174,12 @@ def contact_loss(solution, joint, clearance, damping=0.05):
     reversals = least[found.value[~found.maximum] <= ZERO_FORCE * found.largest]
     around = np.mod(np.add.outer(least, [*-OFFSETS, 0.0, *OFFSETS]).ravel(), play.period)
     result = _judged(play, joint, reversals, np.union1d(play.knots, around))
-    warn_of_notes(owner, Sized(result.notes[1:]))  # but the first, SCREEN, which holds of each
+    warn_of_notes(owner, Sized(result.notes[1:]))  # all but the first, SCREEN, which applies to every result
     return result
 
 
 def _judged(play, joint, reversals, angle):
-    """The `ContactLoss` at crank angles, among which are those near least forces."""
+    """The `ContactLoss` at crank angles, including those near least forces."""
     size, direction, _, across = play.follow(angle)
     index, notes, peaks = play.indices(angle)[1], [SCREEN], [np.inf, np.inf]
     mass, starts = across[np.argmax(index)], [(at, play.follow(at - play.sense * BEFORE)[1], 0.0) for at in reversals]
@@ -191,10 +192,10 @@ def _judged(play, joint, reversals, angle):
     normal, lag, least = size, np.zeros(angle.shape), float(size.min())
     swings = play.swings()
     if swings > MAX_SWINGS and index.max() > MAX_INDEX:
-        words = f"the journal swings {swings:.2g} times in a period, more than the {MAX_SWINGS} that are followed"
+        words = f"the journal swings {swings:.2g} times in a period, more than the {MAX_SWINGS} allowed"
         raise ParameterError(f"contact_loss: {words}; give a larger clearance or crank speed")
     if swings > MAX_SWINGS:
-        notes.append(f"the journal swings {swings:.2g} times in a period: it counts as lying in the force")
+        notes.append(f"the journal swings {swings:.2g} times in a period: it counts as aligned with the force")
     elif not play.lacks_mass:
         motion, repeats, periods = play.motion()
 
@@ -202,7 +203,7 @@ def _judged(play, joint, reversals, angle):
             return play.contact(at, *motion(at))[1]
 
         if not repeats:
-            notes.append(f"the journal reached no periodic motion in {periods} periods: the last one counts")
+            notes.append(f"the journal reached no periodic motion in {periods} periods: the last one is used")
         normal, lag = normal_force(angle), _within_half_a_turn(direction - motion(angle)[0])
         least = -_largest(lambda at: -normal_force(at), angle)
         _, (changes,) = sign_changes(lambda at: [normal_force(at[0])], play.period, angle)
@@ -220,7 +221,7 @@ def _judged(play, joint, reversals, angle):
 
 
 def _largest(function, angle):
-    """Largest value of a function, refined between the crank angles beside the largest of some."""
+    """Largest value of a function, refined around its maximum at the crank angles."""
     from scipy.optimize import minimize_scalar
 
     values = function(angle)
@@ -267,10 +268,10 @@ class _Play:
             "crank_speed must not be 0": self.speed == 0.0,
             f"the force at {joint!r} grows without bound": grows,
             f"{joint!r} carries no force": force <= rounding,
-            f"{joint!r} has no mass on either side; give its links theirs": mass == 0.0,
+            f"{joint!r} has no mass on either side; give its links masses": mass == 0.0,
         }
         if why := next((text for text, holds in whys.items() if holds), None):
-            raise ParameterError(f"contact_loss: {why}, so contact in it cannot be judged")
+            raise ParameterError(f"contact_loss: {why}, so its contact loss cannot be computed")
         _, _, pieces, values = means(function, turn, np.array([rounding] * 2 + [TERM_ROUNDING * mass] * 3))
         self._interpolate(pieces, values[..., 1:-1])
 
@@ -327,7 +328,7 @@ class _Play:
         return damped, e[0] * x + e[1] * y + ee * rate * rate - et * free
 
     def swings(self):
-        """Number of swings about the force in a period; 0 of a journal without mass."""
+        """Number of swings about the force in a period; 0 for a journal without mass."""
         size, *_, across = self.follow(self.knots)
         return 0.0 if self.lacks_mass else float(np.trapezoid(np.sqrt(size / across), self.knots) / (2.0 * np.pi))
 
@@ -337,8 +338,8 @@ class _Play:
 
         def slopes(angle, y, calls):
             if next(calls) > MAX_EVALUATIONS:
-                words = f"the journal's motion cannot be followed at {np.degrees(np.mod(angle, self.period)):.6g} deg"
-                raise ParameterError(f"contact_loss: {words}, where forces or masses change at once")
+                words = f"the journal's motion cannot be computed at {np.degrees(np.mod(angle, self.period)):.6g} deg"
+                raise ParameterError(f"contact_loss: {words}, where forces or masses jump")
             turned, rate = y.tolist()
             return rate, self.contact(angle, turned, rate)[0]
 
@@ -356,7 +357,7 @@ class _Play:
         return lambda angle: run.sol(min(ends) + np.mod(angle - min(ends), self.period)), repeats, periods
 
     def flight(self, start, turned, rate):
-        """`Flight` of a journal that leaves at an angle with a rate."""
+        """`Flight` of a journal from the angle and rate at which it leaves."""
         from scipy.integrate import solve_ivp
 
         def pushed(angle, force=None):

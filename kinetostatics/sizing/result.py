@@ -1,4 +1,4 @@
-"""What every result of sizing has: numbers with unit, meaning and formula, notes on what to look at, and a table."""
+"""Base of all results of sizing: numbers with unit, meaning and formula, notes, and a table."""
 
 import warnings
 from dataclasses import dataclass
@@ -6,18 +6,19 @@ from typing import ClassVar, NamedTuple
 
 from ..errors import HintWarning
 from ..numbers import formatting
+from ..numbers.output_units import output_units
 
 
 class Row(NamedTuple):
-    """What a number of a result is.
+    """Description of a number of a result.
 
     Attributes
     ----------
     unit : str
-        SI, but hours of life.
+        SI, except hours for life.
     meaning : str
     formula : str
-        With its source: author, year or textbook.
+        Formula with its source: author, year or textbook.
     """
 
     unit: str
@@ -29,8 +30,8 @@ class Row(NamedTuple):
 class Sized:
     """Base of the results of `sizing`: numbers by name, and notes.
 
-    A subclass lists its numbers in `ROWS`; each is a field or property. `notes` are sentences on what needs a look;
-    the function that makes the result also warns of them.
+    A subclass lists its numbers in `ROWS`; each is a field or property. `notes` are sentences on points to check;
+    the function that returns the result also warns of them.
 
     Attributes
     ----------
@@ -38,7 +39,7 @@ class Sized:
 
     Examples
     --------
-    As functions of `sizing` return it.
+    Functions of `sizing` return it.
 
     >>> import kinetostatics as ks
     >>> from kinetostatics.sizing.result import Row
@@ -59,14 +60,17 @@ class Sized:
         )
         return f"<{type(self).__name__}: {', '.join(numbers)}{''.join(f'; {note}' for note in self.notes)}>"
 
-    def table(self):
-        """Value, unit, meaning and formula of each number, a pandas DataFrame; notes in ``attrs["notes"]``."""
+    def table(self, units=None):
+        """Value, unit, meaning and formula of each number, a pandas DataFrame; notes in ``attrs["notes"]``.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
         rows = [(name, float(getattr(self, name)), *row) for name, row in self.ROWS.items()]
         found = pd.DataFrame(rows, columns=["number", "value", *Row._fields]).set_index("number")
         found.attrs["notes"] = list(self.notes)
-        return found
+        return output_units(units, "table").table(found)
 
 
 def warn_of_notes(owner, result, stacklevel=3):

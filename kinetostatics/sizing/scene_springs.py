@@ -1,9 +1,9 @@
-"""Springs that balance a slider of a scene, with their own mass in the balance.
+"""Springs that balance a slider of a scene, including their own mass.
 
-The end of a spring of stiffness c and mass m has at the crank speed w the dynamic stiffness c z cot z, z = w sqrt(m/c)
-(`machine.loads.surge`); it balances the mass m3 where m3 w^2 = c z cot z. With the uncorrected stress tau and the
-largest speed v of the slider, z = v sqrt(2 rho G) / tau for springs that press and pull, twice that for opposed pairs
-that stay pressed, whatever wire and count. From z = pi / 2 on there is no balance.
+At the crank speed w the end of a spring of stiffness c and mass m has the dynamic stiffness c z cot z, z = w sqrt(m/c)
+(`machine.loads.surge`). It balances the mass m3 if m3 w^2 = c z cot z. With the uncorrected stress tau and the
+largest speed v of the slider, z = v sqrt(2 rho G) / tau for push-pull springs, and twice that for opposed pairs that
+stay pressed, for any wire and count. For z >= pi / 2 no balance exists.
 """
 
 from dataclasses import dataclass, field, fields
@@ -23,12 +23,12 @@ from .result import Row, warn_of_notes
 from .springs import SAFE, HelicalSpring, helical_spring, lightest
 
 MAX_ITERATIONS, TOLERANCE = 500, 1e-13
-"""Of the stiffness whose spring balances the slider; relative change of the last step."""
+"""Iterations for the balancing stiffness; relative change of the last step."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class BalancingSpring(HelicalSpring):
-    """A `HelicalSpring` that balances a slider, as returned by `spring_for`.
+    """A `HelicalSpring` that balances a slider, `spring_for` returns it.
 
     Examples
     --------
@@ -62,24 +62,24 @@ class BalancingSpring(HelicalSpring):
         yield from super()._notes()
         if self.mass > self.carried_mass or self.fatigue_safety < SAFE:
             weighs = f"{self.mass:.4g} kg of steel for {self.carried_mass:.4g} kg"
-            yield f"{weighs}: take gas springs (ks.GasSpring), or none"
+            yield f"{weighs}: use gas springs (ks.GasSpring), or none"
 
 
 def spring_for(scene, spring="spring", **options):
-    """Lightest helical springs in place of a scene's spring, with their own mass in the balance.
+    """Lightest helical springs that replace a scene's spring, including their own mass in the balance.
 
-    The spring of the scene states the balance: the dynamic stiffness of its end at the crank speed, its `stiffness` if
-    it has no mass. Stiffness and mass of the new springs give the same, waves included; a scene neglects waves, and
-    would need `stiffness_by_third`. Their travel is twice the largest elongation.
+    The scene's spring states the balance: the dynamic stiffness of its end at the crank speed (its `stiffness` if it
+    has no mass). The new springs have the same dynamic stiffness, waves included. A scene neglects waves; it would need
+    `stiffness_by_third`. The travel is twice the largest elongation.
 
     Parameters
     ----------
     scene : Scene
-        Of one design, at its crank speed.
+        One design, at its crank speed.
     spring : str
         Name of the `Spring`, as in the paths of its numbers: "spring", "spring2".
     options
-        Those of `helical_spring`, but stiffness, travel and crank_speed.
+        As for `helical_spring`, without stiffness, travel and crank_speed.
 
     Returns
     -------
@@ -88,8 +88,8 @@ def spring_for(scene, spring="spring", **options):
     Raises
     ------
     ParameterError
-        The scene has no such spring or stands still, its mechanism does not close all round, the spring has a cubic
-        term, or no spring balances the slider, as its mass grows faster than its stiffness.
+        The spring is unknown or has a cubic term. The machine is at rest, or its mechanism does not close all round. No
+        spring balances the slider, because its mass grows faster than its stiffness.
 
     Warns
     -----
@@ -122,8 +122,8 @@ def spring_for(scene, spring="spring", **options):
     if stiffness == np.inf or abs(stiffness - before) > TOLERANCE * stiffness:
         raise ParameterError(
             f"spring_for: no {found.arrangement} springs of {found.material.name} balance {balance / speed**2:.6g} kg: "
-            f"their surge ratio is {np.pi / z:.3g}, and from 2 down their own mass takes all stiffness; allow more "
-            "stress, or take gas springs (ks.GasSpring), or none"
+            f"their surge ratio is {np.pi / z:.3g}, and at 2 or less their own mass uses up all stiffness; allow more "
+            "stress, or use gas springs (ks.GasSpring), or none"
         )
     given = {item.name: getattr(found, item.name) for item in fields(found) if item.init}
     surge = spring_surge(solution, found.mass * rate / found.stiffness)
@@ -132,7 +132,7 @@ def spring_for(scene, spring="spring", **options):
 
 
 def _balance(scene, name):
-    """Solution with a spring alone, its stiffness, travel, size of the crank speed, dynamic stiffness of its end."""
+    """Solution with only one spring, its stiffness, travel, size of the crank speed, dynamic stiffness of its end."""
     places = {path.removesuffix(".stiffness"): place for path, place in scene.places.items()}
     owners = {key: place._replace(steps=place.steps[:-1]).value(scene) for key, place in places.items()}
     springs = {key: owner for key, owner in owners.items() if isinstance(owner, Spring) and "." not in key}
@@ -151,7 +151,7 @@ def _balance(scene, name):
     speed, mass, stiffness = abs(found["crank_speed"]), found["mass"], found["stiffness"]
     if speed * np.sqrt(mass / stiffness) >= np.pi / 2.0:
         raise ParameterError(
-            f"spring_for: the spring's own mass takes all its stiffness at {speed:.6g} rad/s, so it balances nothing: "
+            f"spring_for: the spring's own mass uses up its stiffness at {speed:.6g} rad/s, so it cannot balance: "
             f"{mass:.6g} kg, {stiffness:.6g} N/m; give it less mass or more stiffness"
         )
     balance = float(end_stiffness(stiffness, mass, speed)) if mass else stiffness

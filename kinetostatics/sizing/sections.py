@@ -29,20 +29,20 @@ NUMBERS = {
 """Unit and rule of each option, and of the numbers of a bar."""
 SHAFT = ("length", "polar_moment", "shear_modulus")
 PLACES = 401
-"""Places between stations of a bar at which fatigue is looked at: the safety is off by less than 1e-5."""
+"""Places between stations of a bar at which fatigue is evaluated: the error of the safety is below 1e-5."""
 MAX_COMPRESSION = 0.1
-"""Compression, relative to Euler's load P, up to which it is left out of bending, which grows by 1/(1 - F/P)."""
+"""Compression, relative to Euler's load P, below which its effect on bending, a factor 1/(1 - F/P), is neglected."""
 SINES = 24
 """Terms of the deflection in Ritz's method."""
 ANGLES, MIN_HARMONIC = 1440, 1e-9
-"""Crank angles of a series by harmonics, and size of a harmonic, relative to the largest, that is rounding."""
+"""Crank angles of a series by harmonics, and size of a harmonic, relative to the largest, that counts as rounding."""
 GAUSS = np.polynomial.legendre.leggauss(3)
 """Places and weights in (-1, 1) that integrate a moment, cubic in x, times a straight line."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BarStrength(Sized):
-    """Stress, fatigue and buckling of a bar; `sections` are the forces inside, `x` is the place of fatigue, m."""
+    """Stress, fatigue and buckling of a bar; `sections` are the internal forces, `x` is the place of fatigue, m."""
 
     ROWS: ClassVar = {
         "largest_tension": Row("N", "over bar and turn", "N' = mu (a - g).t"),
@@ -81,22 +81,22 @@ class BarStrength(Sized):
 def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) -> BarStrength:
     """Stress N/A +- M/W in a straight link over length and turn, fatigue by Haigh's diagram, buckling.
 
-    Fatigue counts the largest and the smallest stress of the turn at the same fibre. Notches, size and surface belong
-    into the endurance limit; stress around the pins is left out.
+    Fatigue uses the largest and the smallest stress of the turn at the same fibre. Include the effects of notches, size
+    and surface in the endurance limit; stress around the pins is left out.
 
     Parameters
     ----------
     solution : Solution
     link : str
     bar : Bar
-        With `second_moment` and `youngs_modulus`.
+        Section and mass, with `second_moment` and `youngs_modulus`.
     ultimate, endurance, yield_strength : float
         Ultimate strength S_u, endurance limit S_e of the part, yield strength S_y, Pa.
 
     Returns
     -------
     BarStrength
-        `.fatigue_safety`, `.buckling_safety`, `.largest_stress` ..., `.table()`; `.sections` are the forces inside.
+        `.fatigue_safety`, `.buckling_safety`, `.largest_stress` ..., `.table()`; `.sections` are the internal forces.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
     Warns
     -----
     HintWarning
-        Compression exceeds 10 % of Euler's load, so the bending moment is greater by as much; the stress exceeds the
+        Compression exceeds 10 % of Euler's load, so the bending moment grows by this share; or the stress exceeds the
         yield strength.
 
     Examples
@@ -144,7 +144,7 @@ def bar_strength(solution, link, bar, *, ultimate, endurance, yield_strength) ->
     notes = []
     if compression > MAX_COMPRESSION * euler and moment > 0.0:
         notes.append(
-            f"compression is {compression / euler:.0%} of Euler's load, which raises the bending moment as much"
+            f"compression is {compression / euler:.0%} of Euler's load, which raises the bending moment by this share"
         )
     if max(most, least) > yields:
         words = f"the stress reaches {max(most, least) / 1e6:.4g} MPa, above the yield strength"
@@ -196,9 +196,9 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     joint : str
         Name of a reaction, "A", "B" ...
     diameter, width : float
-        Of the pin, and of the eye on it, m.
+        Diameter of the pin and width of the eye on it, m.
     shear_planes : int
-        1 of a pin held at one end, 2 in a fork.
+        1 for a pin supported at one end, 2 in a fork.
 
     Returns
     -------
@@ -210,7 +210,7 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
     ParameterError
         A number is not positive; the mechanism does not close all round; a batch.
     QuantityError
-        There is no such reaction.
+        The reaction is unknown.
 
     Warns
     -----
@@ -234,7 +234,7 @@ def pin_strength(solution, joint, *, diameter, width, shear_planes=2) -> PinStre
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Rigidity(Sized):
-    """Elastic motion of a bar, or of a shaft, that is computed as rigid."""
+    """Elastic motion of a bar or shaft that counts as rigid in the solution."""
 
     ROWS: ClassVar = {
         "natural_frequency": Row(
@@ -245,7 +245,7 @@ class Rigidity(Sized):
         "order": Row("1", "natural frequency over crank speed", "natural frequency/omega"),
         "deflection": Row("1", "mid-span over length; twist, rad", "int M min(x, L - x) dx/(2 E I L); T L/(G J_p)"),
         "departure": Row(
-            "1", "rigid is within this share of it", "r^2/(1 - r^2) by harmonic, r = n/order (Timoshenko)"
+            "1", "relative error of the rigid model", "r^2/(1 - r^2) by harmonic, r = n/order (Timoshenko)"
         ),
     }
     natural_frequency: float
@@ -265,7 +265,7 @@ def rigidity_of(solution, bars=None, shaft=None) -> dict[str, Rigidity]:
 
 
 def bar_rigidity(solution, link, bar) -> Rigidity:
-    """First bending frequency and deflection of a straight link, and how far vibration makes it depart from rigid."""
+    """First bending frequency and deflection of a straight link, and the relative error of the rigid model."""
     _numbers("needs: bars", solution, {}, bar)
     sections = solution.sections(link, bar)
     stiffness, ends, number = bar.youngs_modulus * bar.second_moment, sections.stations, np.arange(1, SINES + 1)
@@ -299,14 +299,14 @@ def shaft_rigidity(solution, shaft) -> Rigidity:
 
 
 def _evenly(turn):
-    """Solution at even crank angles; the nearest usable ones where no value has a correct digit."""
+    """Solution at even crank angles; angles without correct digits are replaced by the nearest usable ones."""
     return turn.at.moved_to(turn.clear(np.linspace(0.0, turn.period, ANGLES, endpoint=False)))
 
 
 def _against_harmonics(owner, solution, function, natural):
     """`Rigidity` by a natural frequency, rad/s, and the deflection of a rigid machine, a function of a solution."""
     speed = abs(float(np.mean(solution.crank_speed)))
-    checks.require(owner, None if speed else "the crank stands, so nothing vibrates; solve it at its crank speed")
+    checks.require(owner, None if speed else "the crank is at rest, so nothing vibrates; solve it at its crank speed")
     series = np.fft.rfft(function(_evenly(solution.sampled)))
     squares = (np.arange(series.size) * TURN / solution.period * speed / natural) ** 2
     rounding = np.abs(series) <= MIN_HARMONIC * np.abs(series).max()

@@ -4,9 +4,9 @@ With the force F of one spring, the mean diameter D of its coils, the wire d, th
 
     stress  K 8 F D / (pi d^3)    stiffness  G d^4 / (8 D^3 N)    mass  rho pi^2 d^2 D N / 4
 
-K is Ks = 1 + 0.5 / C for forces that stay and Wahl's (4 C - 1) / (4 C - 4) + 0.615 / C for those that alternate (Wahl,
+K is Ks = 1 + 0.5 / C for static forces, Wahl's (4 C - 1) / (4 C - 4) + 0.615 / C for alternating forces (Wahl,
 *Mechanical Springs*, 1963; Norton, *Machine Design*, chapter 14). Without K all wire stores tau^2 / (4 G) per volume,
-so the mass for an energy follows from the stress alone, whatever wire, index and count.
+so the mass for an energy depends only on the stress, not on wire, index or count.
 """
 
 from dataclasses import dataclass, field
@@ -48,14 +48,14 @@ INDICES, LEAST_TURNS, LEAST_SURGE_RATIO = (4.0, 12.0), 3.0, 13.0
 WIRE_RANGE = 1e-6, 1e6
 """Wire diameters of the search over that at a stress of G."""
 SAFE = 1.0 - 1e-9
-"""Least safety without a note: 1 but for rounding."""
+"""Least safety without a note: 1 to rounding."""
 REMEDIES = {
-    "fatigue_safety": "it breaks in time; allow less stress by thicker wire, or take peened wire",
+    "fatigue_safety": "it fails by fatigue; allow less stress by thicker wire, or use peened wire",
     "static_safety": "it sets; allow less stress by thicker wire",
     "solid_safety": "it sets if its coils close; give it a stop before that",
     "buckling_safety": "it buckles; guide it on a rod or in a tube",
 }
-"""What to do about a safety below 1."""
+"""Remedy for a safety below 1."""
 _positive = partial(checks.Number, low=0.0, strict=True)
 
 
@@ -67,20 +67,20 @@ class SpringMaterial(checks.Checked):
     ----------
     name, source : str
     strength, exponent : float
-        Tensile strength of a wire d: strength (d / 1 mm)^-exponent, Pa.
+        Tensile strength of wire with the diameter d: strength (d / 1 mm)^-exponent, Pa.
     thinnest, thickest : float
         Wires of known strength, m. Beyond them the strength of the nearest is used, with a note.
     shear_modulus, youngs_modulus, density : float
         Pa and kg/m3.
     set_share : float
         Stress in torsion at which the spring sets, over the tensile strength.
-    unpeened, peened : (mean, alternating)
+        Stresses in torsion for endless life, Pa; by default Zimmerli's values, which apply to all spring steels.
         Stresses in torsion of endless life, Pa; by default Zimmerli's, which hold for all spring steels.
 
     Raises
     ------
     ParameterError
-        A number is out of its range, or a mean stress of endless life above the ultimate of the thickest wire.
+        A number is out of its range, or a mean stress of endless life exceeds the ultimate stress of the thickest wire.
 
     Examples
     --------
@@ -125,8 +125,8 @@ class SpringMaterial(checks.Checked):
             mean, alternating = getattr(self, name)
             if not (0.0 <= mean < ultimate and alternating > 0.0):
                 yield (
-                    f"{name} must be a mean from 0 to less than {ultimate:.4g} Pa, the ultimate stress in torsion of "
-                    f"the thickest wire, and an alternating stress above 0, got {mean:.4g} and {alternating:.4g} Pa"
+                    f"{name} must be a mean from 0 to less than {ultimate:.4g} Pa (ultimate stress in torsion of the "
+                    f"thickest wire), and an alternating stress above 0; got {mean:.4g} and {alternating:.4g} Pa"
                 )
 
     def tensile_strength(self, wire_diameter):
@@ -149,11 +149,11 @@ class HelicalSpring(Sized):
     Parameters
     ----------
     wire_diameter, coil_diameter : float
-        m; the latter is the mean of the coils, greater than the former.
+        m; `coil_diameter` is the mean diameter, greater than that of the wire.
     active_turns : float
-        Of each spring.
+        Active turns of each spring.
     travel : float
-        Between the ends of the stroke, m.
+        Travel between the ends of the stroke, m.
     preload, material, arrangement, count, peened, crank_speed, end_factor
         As for `helical_spring`.
 
@@ -162,7 +162,7 @@ class HelicalSpring(Sized):
     springs, amplitude, largest_force
         Number of springs, two in an opposed pair; forces of each, N.
     ultimate_stress, set_stress, endurance
-        In torsion, Pa; the last is (mean, alternating) of endless life.
+        Stresses in torsion, Pa; `endurance` is (mean, alternating) for endless life.
 
     Raises
     ------
@@ -277,16 +277,16 @@ class HelicalSpring(Sized):
         return factor * 8.0 * force * self.coil_diameter / (np.pi * self.wire_diameter**3)
 
     def alternating_limit(self, mean):
-        """Alternating stress of endless life at a mean stress, Pa.
+        """Alternating stress for endless life at a mean stress, Pa.
 
-        Up to the mean stress of Zimmerli's tests it is theirs; beyond it falls along a straight line to the ultimate.
+        Up to the mean stress of Zimmerli's tests it is constant; above, it falls linearly to the ultimate stress.
         """
         tested, alternating = self.endurance
         return alternating * np.minimum((self.ultimate_stress - mean) / (self.ultimate_stress - tested), 1.0)
 
     @property
     def fatigue_safety(self):
-        """Factor of the stresses above the initial one at the limit of endless life."""
+        """Factor on the stresses above the initial stress at the limit of endless life."""
         tested, alternating = self.endurance
         rise = self.alternating_stress / alternating
         rest = self.ultimate_stress - self.initial_stress
@@ -295,7 +295,7 @@ class HelicalSpring(Sized):
 
     @property
     def buckling_safety(self):
-        """Deflection at which the spring buckles over the largest; infinite if it never does."""
+        """Deflection at which the spring buckles over the largest; infinite if it never buckles."""
         shear, young = self.material.shear_modulus, self.material.youngs_modulus
         slender = self.end_factor * self.free_length / self.coil_diameter
         bound = 2.0 * np.pi**2 * (young - shear) / (2.0 * shear + young) / slender**2
@@ -305,7 +305,7 @@ class HelicalSpring(Sized):
         return float(deflection * self.stiffness / (self.springs * self.largest_force))
 
     def _notes(self):
-        """Sentences on what needs a look."""
+        """Sentences on points to check."""
         wire, low, high = (1e3 * d for d in (self.wire_diameter, self.material.thinnest, self.material.thickest))
         if not low <= wire <= high:
             known = f"strength of {self.material.name} is known from {low:g} to {high:g} mm"
@@ -314,13 +314,13 @@ class HelicalSpring(Sized):
         if not INDICES[0] <= index <= INDICES[1]:
             yield f"index {index:.3g}: wire is easily coiled with an index of {INDICES[0]:g} to {INDICES[1]:g}"
         if self.active_turns < LEAST_TURNS:
-            advice = "take a smaller index, or more springs"
-            yield f"{self.active_turns:.3g} active turns; textbooks want {LEAST_TURNS:g}: {advice}"
+            advice = "choose a smaller index, or more springs"
+            yield f"{self.active_turns:.3g} active turns; textbooks recommend {LEAST_TURNS:g}: {advice}"
         for name, remedy in REMEDIES.items():
             if (safety := getattr(self, name)) < SAFE:
                 yield f"{name.replace('_', ' ')} is {safety:.3g}, below 1: {remedy}"
         if self.surge_ratio < LEAST_SURGE_RATIO:
-            yield f"surge ratio is {self.surge_ratio:.3g}; textbooks want {LEAST_SURGE_RATIO:g}, as coils may clash"
+            yield f"surge ratio {self.surge_ratio:.3g}; textbooks recommend {LEAST_SURGE_RATIO:g}, as coils may clash"
 
 
 def helical_spring(
@@ -344,28 +344,28 @@ def helical_spring(
     Parameters
     ----------
     stiffness : float
-        Of all springs together, N/m.
+        Stiffness of all springs together, N/m.
     travel : float
-        Between the ends of the stroke, m.
+        Travel between the ends of the stroke, m.
     preload : float, optional
-        Force of each spring at mid-travel, pressing, N. By default 0 for "push-pull", and for "opposed" the least that
-        keeps each spring pressed.
+        Force of each spring at mid-travel, in compression, N. By default 0 for "push-pull", and for "opposed" the
+        smallest that keeps each spring in compression.
     material : str or SpringMaterial
-        "music wire" or "EN 10270-2 CrSi", or one's own.
+        "music wire" or "EN 10270-2 CrSi", or your own.
     arrangement : "push-pull" or "opposed"
-        Springs that press and pull, or pairs of springs that press against each other.
+        Springs in compression and tension, or pairs of compression springs against each other.
     count : int
         Number of equal springs, or of equal pairs.
     allowed_stress : float, optional
-        Pa, at the largest force; without it the `safety` decides.
+        Pa, at the largest force; by default `safety` decides.
     correction : "none", "Ks" or "Wahl"
-        Factor of the stress that is allowed.
+        Correction factor in the allowed stress.
     safety : float
         Least of the fatigue and static safety.
     index : float
         Mean diameter of the coils over that of the wire.
     peened : bool
-        Whether the wire is shot-peened, which raises its stresses of endless life.
+        Whether the wire is shot-peened, which raises its stresses for endless life.
     crank_speed : float
         rad/s, for the surge ratio.
     end_factor : float
@@ -378,7 +378,7 @@ def helical_spring(
     Raises
     ------
     ParameterError
-        A number is not positive or finite, there is no such material, or an opposed spring loses its load.
+        A number is not positive or finite, the material is unknown, or an opposed spring loses its load.
 
     Warns
     -----

@@ -1,4 +1,4 @@
-"""What users hold: the scene, its solution, compiled programs, uncertainty of results.
+"""Solutions for users: the scene, its solution, compiled programs, uncertainty of results.
 
 May import errors, numbers to explain.
 """

@@ -1,10 +1,10 @@
-"""How sure each value of a solution is: proven bounds on rounding, and uncertainty from uncertain inputs.
+"""Accuracy of each value of a solution: proven rounding bounds, and uncertainty from uncertain inputs.
 
 The uncertainty is of first order: sensitivities f_i, exact derivatives of the recorded program, times the standard
-uncertainties u_i (JCGM 100:2008, section 5.1). A warning reports where the second order is not small beside it. Of
-independent normal inputs the terms of second order, 1/2 sum f_ij d_i d_j, have the mean 1/2 sum f_ii u_i^2 and the
-variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note); the second order counts as the root of their mean
-square. All in the unit of the quantity.
+uncertainties u_i (JCGM 100:2008, section 5.1). A warning names the angles where the second order is not small. For
+independent normal inputs the second-order terms, 1/2 sum f_ij d_i d_j, have the mean 1/2 sum f_ii u_i^2 and the
+variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note). The second order is the root of their mean square. All
+values are in the unit of the quantity.
 """
 
 import warnings
@@ -35,18 +35,18 @@ from .parameters import (
 )
 
 MAX_SECOND_ORDER_SHARE = 0.1
-"""Largest second order that needs no warning, relative to the first."""
+"""Largest ratio of second to first order without a warning."""
 MEDIAN_SHARE = 0.01
-"""Least first order to compare with, relative to its median over the crank angles: at some angles it vanishes."""
+"""Smallest reference value of the first order, relative to its median over the crank angles."""
 MAX_PAIRWISE_INPUTS = 3
-"""Inputs up to which each product of two is computed without looking at their sums first."""
+"""Largest number of inputs for which each product of two is computed directly, without sums of products first."""
 
 
 class LargeSecondOrder(NamedTuple):
-    """Where the second order is not small beside the first: at how many values of how many, and at the worst of them.
+    """Values with a second order that is not small: `values` of `of` crank angles, and the worst of them.
 
-    `paths` are the input, or the two inputs, with the largest second order there; the second order is NaN where the
-    quantity has no value with these inputs moved.
+    `paths` are the one or two inputs with the largest second order there; the second order is NaN where the
+    quantity has no value with these inputs changed.
     """
 
     values: int
@@ -59,17 +59,17 @@ class LargeSecondOrder(NamedTuple):
     def doubt(self, quantity, unit, inputs):
         """The `Doubt` that a warning reports."""
         moved, way = " and ".join(f"{path} {inputs[path]:.3g}" for path in self.paths), " or smaller"
-        found = f"with {moved} larger{way if len(self.paths) == 1 else ''} there is no value"
+        found = f"with {moved} larger{way if len(self.paths) == 1 else ''} the quantity has no value"
         if np.isfinite(self.second):
             most = " and ".join(self.paths) + (" together" if len(self.paths) > 1 else "")
-            found = f"the first makes {self.first:.2g} {unit}, the second {self.second:.2g}, most of it of {most}"
+            found = f"first order {self.first:.2g} {unit}, second order {self.second:.2g}, mostly from {most}"
         where = f"at {np.degrees(self.angle):.9g} deg {found}; vary the inputs there, as ks.tolerances does"
-        places = f"which says too little at {self.values} of {self.of} crank angles"
+        places = f"which is not accurate at {self.values} of {self.of} crank angles"
         return Doubt(quantity, places, where, self.second / self.first if self.first > 0.0 else np.inf)
 
 
 class Doubt(NamedTuple):
-    """Why the first-order uncertainty of a quantity is too small: a clause, where, and second order over first."""
+    """Reason why a first-order uncertainty is too small: a clause, the place, and second order over first order."""
 
     quantity: str
     what: str
@@ -85,8 +85,8 @@ def doubt_text(doubts):
     worst = max(doubts, key=lambda doubt: np.nan_to_num(doubt.share, nan=np.inf))
     *names, last = dict.fromkeys(doubt.quantity for doubt in doubts)
     return (
-        f"the uncertainties of {', '.join(names)} and {last} are of first order in the inputs, and may be more; "
-        f"that of {worst.quantity} most: {worst.where}"
+        f"the uncertainties of {', '.join(names)} and {last} are of first order in the inputs, and may be larger; "
+        f"the worst is {worst.quantity}: {worst.where}"
     )
 
 
@@ -105,9 +105,9 @@ def _codes(count):
 
 
 def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None:
-    """Where the second order, by differences, is not small; None if nowhere.
+    """Places where the second order, by differences, is not small; None if it is small everywhere.
 
-    Of many inputs sums of all products of two are computed before each product, with signs so that no two products
+    For many inputs, sums of all products of two are computed before each product. Their signs prevent that two products
     cancel in every sum.
 
     Parameters
@@ -138,7 +138,7 @@ def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None
 
 
 def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | None:
-    """Where the second order is not small beside the first order and rounding; None if nowhere.
+    """Places where the second order is not small relative to the first order and rounding; None if there are none.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def _root_sum_square(part: Any, axis: Any = 0):
 
 
 def sensitivities(program, by, state, leaves, backend):
-    """Derivatives by quantity and path, shaped as the quantities, NaN where these are; `by` has leaves by path."""
+    """Derivatives by quantity and path, shaped as the quantities, NaN where these are; `by` maps paths to leaves."""
     rows = backend.run(program.by_parameters(tuple(by.values())), state, leaves)
     count = len(program.outputs)
     gaps, found = np.isnan(rows[:count]), rows[count:].reshape(count, len(by), *state.shape)
@@ -193,11 +193,11 @@ class Uncertainty:
     Attributes
     ----------
     inputs : dict of path to array
-        Uncertainty from each input alone.
+        Uncertainty from each single input.
     rounding : array
         Proven bound on the rounding error.
     unit : str
-        SI unit of all of them.
+        SI unit of all values.
 
     Examples
     --------
@@ -220,7 +220,7 @@ class Uncertainty:
 
     @property
     def total(self):
-        """Tolerance plus rounding: a bound is no standard deviation, so both are added."""
+        """Tolerance plus rounding; they are added because a bound is not a standard deviation."""
         return self.tolerance + self.rounding
 
     def __array__(self, dtype=None, copy=None):
@@ -245,30 +245,30 @@ class Certainty(Parameters):
     def error_bound(self, quantity, tight=False):
         """Proven bound on the rounding error of each value of a quantity, by running error analysis.
 
-        No value computed in exact arithmetic differs from the solution's by more. Numbers given to constructors, as
-        floats, and crank angles are exact; all that is derived from them, as directions of guides and gravity, is
-        bounded. A guide through two points counts as rounded once.
+        Exact arithmetic gives values within this bound of the solution. Numbers given to constructors, as floats, and
+        crank angles count as exact. Numbers derived from them, such as directions of guides and of gravity, have
+        bounds. A guide through two points counts as rounded once.
 
         Parameters
         ----------
         quantity : str
             "balancing_torque", a joint (its reaction), "slider_velocity" ...; ``"|O|"`` for the magnitude of a vector.
         tight : bool
-            Whether it may take twice as long, and be up to ten times smaller.
+            True: the calculation takes up to twice as long, and the bound is up to ten times smaller.
 
         Returns
         -------
         array
-            Shaped as the quantity, in its unit: of a vector for each component. Infinite where nothing can be proven
-            (a divisor may vanish, a sign is not sure), NaN where there is no value. At a dead centre where a table over
-            travel has another value on the way back, it is as large as that step.
+            In the shape and unit of the quantity; vectors have a bound for each component. Infinite where nothing can
+            be proven (a divisor may vanish, a sign is uncertain), NaN where there is no value. At a dead centre, where
+            a table over travel has another value on the way back, the bound is as large as that step.
 
         Raises
         ------
         QuantityError
-            The mechanism has no such quantity; the message lists those it has.
+            The quantity is unknown; the message lists those of the mechanism.
         NotGivenError
-            A group, load or cam does more than recorded arithmetic, so its own rounding is not known.
+            A group, load or cam does more than recorded arithmetic, so its rounding is unknown.
 
         Notes
         -----
@@ -288,36 +288,36 @@ class Certainty(Parameters):
     def uncertainty(self, quantity, inputs):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
 
-        To first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression of uncertainty in
-        measurement*, section 5.1); see `tolerances` for spreads of any size and kind. Near limit positions and
-        toggles, which the inputs move, first order says too little, and a warning tells where.
+        The uncertainty is of first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression
+        of uncertainty in measurement*, section 5.1); `tolerances` handles spreads of any size and distribution. Near
+        limit positions and toggles, which move with the inputs, first order is inaccurate; a warning gives the angle.
 
         Parameters
         ----------
         quantity : str
             As for `error_bound`.
         inputs : mapping of path to float
-            Standard uncertainties, SI, of numbers of the scene named as in case files: ``{"crank_length": 1e-5}``.
+            Standard uncertainties, SI, of numbers of the scene by path, as in case files: ``{"crank_length": 1e-5}``.
 
         Returns
         -------
         Uncertainty
-            With `tolerance`, `rounding` and their sum, `total`, each shaped as the quantity; for NumPy's functions it
-            is an array of its `total`. Printed, it shows the largest over the crank angles.
+            With `tolerance`, `rounding` and their sum, `total`, each in the shape of the quantity. NumPy functions use
+            `total`. ``print`` shows the largest values over the crank angles.
 
         Raises
         ------
         QuantityError, NotGivenError
-            As for `error_bound`; derivatives too are of recorded arithmetic alone.
+            As for `error_bound`; derivatives also need recorded arithmetic.
         ParameterError
-            There is no such number, or an uncertainty is negative or not finite.
+            A path is unknown, or an uncertainty is negative or not finite.
 
         Warns
         -----
         ConditionWarning
-            At some crank angle the second order of the inputs, products of two included, is more than a tenth of the
-            first and more than a thousandth of the first's median, or there is no value with an input larger or
-            smaller by its uncertainty, or with two larger.
+            At some crank angle the second order of the inputs (with products of two inputs) is more than a tenth of
+            the first order and more than a thousandth of its median. Or the quantity has no value with one or two
+            inputs changed by their uncertainty.
 
         Examples
         --------
@@ -333,7 +333,7 @@ class Certainty(Parameters):
         return found
 
     def with_doubt(self, quantity, inputs):
-        """The same, and the `Doubt` that it is too small, or None."""
+        """The uncertainty, and a `Doubt` if it is too small, or None."""
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
         checks.require("uncertainty", *(path_problem(self, path) for path in inputs if path not in self.places))
@@ -376,11 +376,11 @@ class Certainty(Parameters):
             beyond = find_second_order(change, self.crank_angle, first, rounding)
             doubt = None if beyond is None else beyond.doubt(name, quantities.unit_of(self, name), inputs)
         except ParameterError as why:  # a slider beyond its table, for one
-            doubt = Doubt(name, "and may be more", f"with them moved, {why}")
+            doubt = Doubt(name, "and may be larger", f"with changed inputs, {why}")
         return found, doubt
 
     def _values_and_bound(self, quantity, tight=False):
-        """Values of a quantity, of a vector its components, and a bound on the rounding of it or of its magnitude."""
+        """Values of a quantity (components of a vector), and a bound on the rounding of it or of its magnitude."""
         name = quantities.without_bars(self, quantity)
         values, bounds = (found[name] for found in self.engine.with_bounds(self.dynamics, (name,), tight))
         if name == quantity:
@@ -389,7 +389,7 @@ class Certainty(Parameters):
 
 
 def _magnitude_slope(vector, slope):
-    """Derivative of the magnitude of a vector from that of the vector; where the vector is 0, its magnitude."""
+    """Derivative of the magnitude of a vector from the vector's derivative; its magnitude where the vector is 0."""
     (x, y), size = vector, np.hypot(*vector)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(size > 0.0, (x * slope[0] + y * slope[1]) / size, np.hypot(*slope))[()]

@@ -1,4 +1,4 @@
-"""Test of a user's group without its own formulas: differences of positions, rigid links, and virtual work.
+"""Test of a user's group, independent of its formulas: differences of positions, rigid links, and virtual work.
 
 The test moves the joints that the group is attached to, from many places in which the group closes. Velocities and
 accelerations must agree with differences of positions. Each link's state must agree with those of its joints, guides
@@ -35,10 +35,10 @@ from ..numbers.planar import (
 
 STATE_NAMES = ("position", "velocity", "acceleration")
 MAX_RELATIVE_ERROR = 1e-6
-"""Largest error that passes; right groups reach 1e-10, a wrong term gives about 1."""
+"""Largest error that passes; correct groups reach 1e-10, a wrong term gives about 1."""
 ANGLE_STEP = 2.0**-8
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
-"""Of a central difference of the eighth order, with steps of `ANGLE_STEP` rad."""
+"""Weights of a central difference of the eighth order, with steps of `ANGLE_STEP` rad."""
 MAX_PLACES = 24
 
 
@@ -83,24 +83,24 @@ def _fails(error):
 
 
 def check(group):
-    """Test a group, above all a user's own: its derivatives, forces and power.
+    """Test a group, especially your own: its derivatives, forces and power.
 
     Parameters
     ----------
     group : SliderGroup, RockerGroup, CamRoller or alike
-        With the members that `kinetostatics.machine.group` lists; a single design.
+        Its members are listed in `kinetostatics.machine.group`; a single design.
 
     Returns
     -------
     GroupReport
-        True if all is right; its text has a line for each check, `problems` a sentence for each that fails. Reactions
-        inside the group are tested only as far as they add to the force on the joints it is attached to.
+        True if all checks pass; its text has a line for each check, `problems` a sentence for each that fails.
+        Reactions inside the group are tested only through their sum at the joints it is attached to.
 
     Raises
     ------
     ParameterError
         A member is missing, `place` adds less than the group declares, `closure` is no number for each crank angle or
-        not negative where `place` finds no position, or the group closes nowhere near its own size.
+        not negative where `place` finds no position, or the group closes nowhere at its scale.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def check(group):
     _, problem = checks.HasMembers(MEMBERS, "a group").check(group, "group")
     checks.require("check", problem)
     if getattr(group, "passes", False):
-        group = replace(group)  # its joint is moved by hand, and on no crank it has no change points
+        group = replace(group)  # the test moves its joint, and without a crank it has no change points
     stage = _stage(group)
     errors: dict[str, float] = {}
     for compare in (_shape, _points, _fixed_joints, _guides, _slots, _slidings, _derivatives, _forces):
@@ -124,7 +124,7 @@ def check(group):
 def _error(found, expected, unit):
     """Largest difference over the largest value, or over `unit` if larger, of the worst component.
 
-    It is infinite if not finite; an absent value is zero.
+    Infinite if a value is not finite; an absent value is zero.
     """
     errors = []
     for pair in zip(_components(found), _components(expected), strict=False):
@@ -139,7 +139,7 @@ def _components(value):
 
 
 class _Stage(NamedTuple):
-    """A group, its shortest length, and crank angles and places (x, y) of its first carrying joint where it closes."""
+    """A group, its shortest length, and crank angles and places (x, y) of its first carrying joint: it closes there."""
 
     group: Any
     size: float
@@ -148,16 +148,16 @@ class _Stage(NamedTuple):
 
     @property
     def carrying_joints(self):
-        """Joints that it is attached to, but for O."""
+        """Joints that it is attached to, except O."""
         return [name for name in getattr(self.group, "hangs_on", ("O",)) if name != "O"]
 
     @property
     def carriers(self):
-        """Links of other groups that it fixes a joint to."""
+        """Links of other groups to which it fixes a joint."""
         return {point.link for point in self.group.joints.values()} - {FRAME, *self.group.links}
 
     def place_joints(self, turn=0.0, way=(0.5, 0.3), alone=""):
-        """Placement with the crank turned further; each carrying joint, or one alone, moves on a curve along `way`."""
+        """Placement with the crank turned further; carrying joints, or only the joint `alone`, move along `way`."""
         angle = self.angle + turn
         direction = ray(angle)
         joints = {"O": ORIGIN}
@@ -212,11 +212,11 @@ def _stage(group):
     return whole._replace(position=(x[chosen], y[chosen]), angle=whole.angle[chosen])
 
 
-# Comparisons: name of the check, two values that must agree, and a size below which neither counts
+# Comparisons: name of the check, two values that must agree, and a size below which differences do not count
 
 
 def _shape(stage, placement):
-    """Lengths of bars, unit vectors, reference joints, and what groups declare of travels and courses."""
+    """Lengths of bars, unit vectors, reference joints, and declared travels and courses."""
     group, size = stage.group, stage.size
     for bar in group.bars:
         ends = (vector_or_zero(placement.joints[name].position) for name in (bar.end, bar.start))
@@ -333,7 +333,7 @@ def _states(spot):
 
 
 def _velocity(placement, link, joint):
-    """Velocity of the point of a link that is at a joint."""
+    """Velocity of the point of a link at a joint."""
     if link == FRAME:
         return None
     motion = placement.links[link]
@@ -354,7 +354,7 @@ def _derivatives(stage, placement):
 
 
 def _rates(stage, placement):
-    """Value, its derivative as the group gives it, and a size below which neither counts, by name."""
+    """Value, its derivative by the group, and a size below which differences do not count, by name."""
     moving = placement.joints.keys() - {"O", *stage.carrying_joints}
     joints = {f"joint {name}": placement.joints[name] for name in moving}
     joints |= {f"travel of {name}": travel for name, travel in placement.travels.items()}
@@ -377,7 +377,7 @@ def _rates(stage, placement):
 
 
 def _forces(stage, still):
-    """Work of the forces and of the loads on small motions of each joint, which must be zero together."""
+    """Work of the forces and the loads on small motions of each joint; the sum must be zero."""
     if not stage.group.links:
         return
     random = np.random.default_rng(0)

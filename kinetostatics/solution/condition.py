@@ -1,16 +1,16 @@
-"""How many times relative errors of lengths and crank angle are magnified in rates, reactions and torque.
+"""Condition: magnification of relative errors of lengths and crank angle in rates, reactions and torque.
 
 The magnification of a quantity q at a crank angle is, by the exact derivatives of the recorded program,
 
     sum over lengths and crank angle p of |p dq/dp|, over the largest term of q
 
-The largest term of a rate is that rate, of a reaction the largest load on a link, of the torque the largest torque that
-one load alone would take; terms that pass through zero count as a tenth of what they are if speeds and accelerations
-have their worst direction. Only as much of a term counts as is certain with rounded lengths: where no digit is left,
-the computed value means nothing.
+The largest term of a rate is the rate itself, of a reaction the largest load on a link, of the torque the largest
+torque of a single load. A term that passes through zero counts as a tenth of its value for the worst direction of
+speeds and accelerations. Only the part of a term that is certain with rounded lengths counts; where no digit is
+certain, the computed value is meaningless.
 
-A group of the user's own may do more than arithmetic, so that it cannot be recorded. Then the derivatives are central
-differences, good to some ten digits away from limit positions, and a `ConditionWarning` says so.
+A user's group may do more than arithmetic, so that it cannot be recorded. Then the derivatives are central
+differences, accurate to about ten digits away from limit positions, with a `ConditionWarning`.
 """
 
 import itertools
@@ -38,13 +38,13 @@ from ..numbers.planar import product, subtract_vectors
 MARGIN_FACTOR = 100.0
 """Upper limit of the condition times margin^2 / (proportion^2 times crank angle)."""
 SAFETY_FACTOR = 3.0
-"""Makes a bound of a magnification: errors may have other signs, and derivatives are rounded."""
+"""Factor from a magnification to its bound: signs of errors may differ, and derivatives are rounded."""
 UNCERTAIN_ROUNDINGS = 4.0
-"""Roundings of all lengths and the crank angle that a value is uncertain by."""
+"""Number of roundings of all lengths and the crank angle in the uncertainty of a value."""
 ZERO_SHARE = 0.1
-"""Share of its worst case that a term counts as where it passes through zero."""
+"""Least value of a term that passes through zero, relative to its worst case."""
 BLOCK_SIZE = 512
-"""Crank angles differentiated at a time."""
+"""Number of crank angles differentiated at a time."""
 THIRD_STEP = 1e-4
 """Step of the crank angle for the third derivative of a cam that is not recorded, rad."""
 DIFFERENCE_STEP = 6e-6
@@ -63,8 +63,8 @@ def condition(solution, points=None, reactions=None):
     points : array of int (M,), optional
         Places in the flattened shape of the solution; default all.
     reactions : bool, optional
-        Whether reactions count; default: where no change points are passed, for there they grow without bound. They
-        are compared with the largest value that they have grown to.
+        Whether reactions count; by default where no change points are passed, because reactions grow without bound
+        there. They are compared with the largest value that they have reached.
     """
     points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
     reactions = not solution.mechanism.passes if reactions is None else reactions
@@ -84,7 +84,7 @@ def condition(solution, points=None, reactions=None):
 
 
 def _in_double_precision(solution):
-    """The scene on NumPy arrays of doubles, whatever numbers it has."""
+    """The scene with NumPy arrays of doubles."""
     angle = solution.crank_angle
     if type(angle) is not np.ndarray or angle.dtype != float:
         scene = (solution.crank_speed, solution.crank_acceleration, solution.loads, solution.friction, solution.sense)
@@ -109,7 +109,7 @@ def _not_given(solution, reason):
 
 
 def _at(points, solution, value):
-    """Values at some places of a solution, (M,); a plain number stays one."""
+    """Values at some places of a solution, (M,); a plain number is unchanged."""
     value = np.asarray(value, dtype=float)
     return np.broadcast_to(value, solution.shape or (1,)).ravel()[points] if value.ndim else float(value)
 
@@ -118,7 +118,7 @@ def _at(points, solution, value):
 
 
 class _Size:
-    """Magnitude of a number or vector, sum of the magnitudes of its changes, and how much of it is certain, (M,)."""
+    """Magnitude of a number or vector, sum of the magnitudes of its changes, and its certain part, (M,)."""
 
     def __init__(self, values, slopes):
         self.is_positive = np.asarray(values[0]) > 0.0
@@ -140,7 +140,7 @@ class _Terms(NamedTuple):
 
 
 def _parts(scene):
-    """All that the magnification is made of, each part a tuple of components: numbers, arrays or nodes."""
+    """Terms of the magnification, each a tuple of components: numbers, arrays or nodes."""
     found: list[tuple] = []
 
     def listed(part, *arguments):
@@ -153,7 +153,7 @@ def _parts(scene):
 
 
 def _component(part):
-    """A number, array or node; 0 of an absent one."""
+    """A number, array or node; 0 if absent."""
     return 0.0 if part is None else part[0] if getattr(part, "dtype", None) == np.dtype(object) else part
 
 
@@ -184,7 +184,7 @@ def _magnification(scene, size_of, largest_pushes, reactions):
 
 
 def _over(found, terms):
-    """Change of a quantity over its value, or over its terms where they are larger; 0 where nothing changes."""
+    """Change of a quantity over its value, or over its terms where these are larger; 0 without change."""
     return _quotient(found.change, np.maximum(found.certain, terms))
 
 
@@ -203,8 +203,8 @@ def _terms(scene, size_of):
         lengths = {bar.link: size_of(bar.length).size for bar in part.bars}
         for name in part.links:
             link, body = placement.links[name], bodies[name]
-            length = lengths.get(name, np.inf)  # a link that does not turn has none
-            if name not in lengths and link.ratio is not None:  # a lever is as long as its block is far
+            length = lengths.get(name, np.inf)  # a link that does not turn has no length
+            if name not in lengths and link.ratio is not None:  # the length of a lever is the distance of its block
                 gaps = [size_of(subtract_vectors, joint.position, link.joint.position).size for joint in joints]
                 length = reduce(np.maximum, gaps, 0.0)
                 length = np.where(length > 0.0, length, np.inf)
@@ -225,7 +225,7 @@ def _of_centre(derivative, link, body):
 
 
 def _of_forces(scene, size_of, links, largest_pushes, reactions):
-    """Magnification in torque and reactions; nothing without loads."""
+    """Magnification in torque and reactions; zero without loads."""
     forces, torques = [0.0], [0.0]
     for name, wrench in scene.link_loads.items():
         link = links[name]
@@ -351,7 +351,7 @@ def _by_differences(solution):
     """Scene, and function of sizes, as `_Recorded.of`, by central differences of the kernels on plain numbers."""
     warnings.warn(
         f"{solution.mechanism.name}: a group of it does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
-        "so its condition is by differences in place of exact derivatives, and rough near limit positions",
+        "so its condition follows from differences instead of exact derivatives; it is rough near limit positions",
         ConditionWarning,
         stacklevel=4,
     )
@@ -398,9 +398,9 @@ def state_of(structure, leaves, angle):
 
 
 def is_surely_well_conditioned(solution, margins):
-    """Whether the margins of closure alone show that no crank angle loses half of its digits.
+    """Whether the margins of closure suffice to show that no crank angle loses half of its digits.
 
-    The margins of a group of the user's own may be wrong, so they show nothing.
+    The margins of a user's group may be wrong, so they do not count.
     """
     least = 1.0 if solution.mechanism.trusted else 0.0
     for margin in margins:
@@ -411,9 +411,9 @@ def is_surely_well_conditioned(solution, margins):
 
 
 def _sufficient_margin(solution, farthest=None):
-    """Product of all groups' margins from which the condition is below `HALF_DIGITS_CONDITION`.
+    """Product of all groups' margins above which the condition is below `HALF_DIGITS_CONDITION`.
 
-    A bound of the crank angles will do in place of the farthest of them.
+    `farthest` may be a bound of the crank angles.
     """
     farthest = float(np.abs(np.asarray(solution.crank_angle)).max()) if farthest is None else farthest
     return solution.proportion * math.sqrt(MARGIN_FACTOR * max(1.0, farthest) / HALF_DIGITS_CONDITION)
@@ -422,8 +422,8 @@ def _sufficient_margin(solution, farthest=None):
 def warn_of_lost_digits(solution, margins):
     """Warn of crank angles that lose half of their digits or more; `margins` are the closure of the groups.
 
-    The condition is computed only where the margins are small. Numbers of other precision than double lose other
-    digits, so they are not looked at.
+    The condition is computed only where the margins are small. Numbers in other precision than double lose different
+    digits and get no warning.
     """
     if not margins or any(not isinstance(margin, np.ndarray) or margin.dtype != float for margin in margins):
         return
@@ -446,8 +446,8 @@ def warn_of_lost_digits(solution, margins):
         f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg {cause} "
         f"magnified {found[worst]:.3g} times, so rates and "
         f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {count} of "
-        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition tells it "
-        "angle by angle; how many digits are correct for the very numbers given, often far more, is proven by "
+        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition gives the "
+        "magnification at each angle; for the given numbers often far more digits are correct, which is proven by "
         f"solution.error_bound(quantity)){''.join(f'; {text}' for text in kinks)}",
         ConditionWarning,
         stacklevel=4,

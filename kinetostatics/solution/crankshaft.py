@@ -1,4 +1,4 @@
-"""The crankshaft as users hold it: rocking moment, torque between throws, reactions of the main bearings."""
+"""Results of the crankshaft: rocking moment, torque between throws, reactions of the main bearings."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from ..mechanics.quantities import of_scene
 
 
 class CrankshaftResults:
-    """Results of a machine whose groups have planes along the crankshaft; `QuantityError` where they have none."""
+    """Results of a machine whose groups have planes along the crankshaft; `QuantityError` if they have none."""
 
     dynamics: Any
     _found: Any
@@ -32,16 +32,16 @@ class CrankshaftResults:
     def shaft_torque(self, group, drive="right"):
         """Torque in the crankshaft beside the throw of a group, on the side of the drive, (..., N), N m.
 
-        Counter-clockwise positive, on the part toward the free end. Beside the throw nearest to the drive it is the
-        balancing torque less friction in the main bearings. "shaft_torque coupler2", the quantity of extremes and
-        sweeps, has the drive on the right.
+        Positive counter-clockwise on the part toward the free end. Beside the throw nearest to the drive it is the
+        balancing torque less friction in the main bearings. The quantity "shaft_torque coupler2" of extremes and
+        sweeps assumes the drive on the right.
 
         Parameters
         ----------
         group : str
             First link of a group on the crank or a pin of it, such as "coupler2".
         drive : "right" or "left"
-            Driven end, beyond all throws; "right" is that of large positions.
+            Driven end, beyond all throws; "right" is the end at large positions.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""Forces on the frame as users hold them: `Solution.ground`."""
+"""Forces on the frame: `Solution.ground`."""
 
 import warnings
 from collections.abc import Mapping
@@ -15,21 +15,21 @@ from ..numbers.planar import cross
 
 POINT = checks.Pair("m")
 MAX_UNDECLARED = 1e-9
-"""Largest part of the forces on the frame that no declared pair takes, relative to the largest load: rounding."""
+"""Largest difference of frame forces from those of declared pairs, relative to the largest load: rounding."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ground(Mapping):
-    """Forces of the machine on the frame, by the place where the two push each other; read as `Solution.ground`.
+    """Forces of the machine on the frame by the place of contact; `Solution.ground` returns them.
 
     Each is a `Support` with `force` (2, ..., N), N, the `point` where it acts, (2, ..., N), m, and `couple` (..., N),
     N m, counter-clockwise. The places:
 
-    - fixed pivots, "O", "O2" ...: the opposite of the reaction; friction of the pin is a couple.
+    - fixed pivots, "O", "O2" ...: the opposite of the reaction, plus a couple from pin friction.
     - guides, "guide", "guide2" ...: the opposite of the reaction, friction included, and of the guide moment, at the
       slider pin.
     - "cam": along the common normal. The point is the contact if the roller has a radius (`Roller`, `RollerFriction`),
-      on the flank that the sign of the force gives; else the roller's centre A, through which the normal passes.
+      on the flank according to the sign of the force; else the roller's centre A, through which the normal passes.
     - loads, named as in parameter paths, "spring", "spring2", "point_damper", "torsion_spring" ...: the foot of a
       spring along a guide, at the coordinate where it is free; the fixed point of a load between two points; the
       opposite couple of a torque against the frame; a `ProcessForce` with ``reaction="frame"``, at the slider pin.
@@ -37,7 +37,7 @@ class Ground(Mapping):
 
     By d'Alembert's principle `resultant` is the sum of shaking force, weights and outside forces on the links (`Force`,
     and `ProcessForce` with ``reaction="outside"``). A `Force` at a fixed point acts on the frame from outside and is
-    left out. A load without the base class `Load` counts as one from outside.
+    excluded. A load without the base class `Load` counts as an external load.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Ground(Mapping):
     Warns
     -----
     UserWarning
-        A group of the user's own pushes the frame by more than the pairs with it that it declares.
+        A user's group loads the frame by more than its declared pairs with the frame.
 
     Examples
     --------
@@ -65,7 +65,7 @@ class Ground(Mapping):
             self._warn_of_undeclared()
 
     def _warn_of_undeclared(self):
-        """Warn if a group of the user's own pushes the frame where it declares no pair."""
+        """Warn if a user's group loads the frame without a declared pair."""
         dynamics = self.solution.dynamics
         force, moment = undeclared(dynamics)
         if np.any(force > MAX_UNDECLARED * dynamics.largest_force_term) or np.any(
@@ -73,8 +73,8 @@ class Ground(Mapping):
         ):
             warnings.warn(
                 f"{self.solution.mechanism.name}: the forces on the frame lack up to {np.nanmax(force):.3g} N and "
-                f"{np.nanmax(moment):.3g} N m about O, as a group of your own pushes the frame by more than the pairs "
-                "with it that it declares (kinetostatics.machine.group)",
+                f"{np.nanmax(moment):.3g} N m about O, because a group of your own loads the frame by more than its "
+                "declared pairs with the frame (kinetostatics.machine.group)",
                 stacklevel=2,
             )
 
@@ -96,7 +96,7 @@ class Ground(Mapping):
         Raises
         ------
         QuantityError
-            There is no such place; the message lists those there are.
+            The place is unknown; the message lists the known places.
         """
         solution = self.solution
         point = solution.as_vector(support(solution, name).point)
@@ -140,7 +140,7 @@ class Ground(Mapping):
     def table(self):
         """Largest force and couple at each place over the period, with their crank angles, a pandas DataFrame.
 
-        True extremes; the first row is the sum of all forces. NaN stands where a place has no force or no couple, and
+        True extremes; the first row is the sum of all forces. NaN where a place has no force or no couple, and
         for the crank angle of a constant.
 
         Raises
@@ -187,6 +187,6 @@ def _largest(solution, quantity):
 
     found = extrema(solution, quantity)
     if not len(found):
-        return found.constant + 0.0, np.nan  # without the sign of zero
+        return found.constant + 0.0, np.nan  # 0.0 in place of -0.0
     place = int(np.argmax(np.abs(found.value)))
     return float(found.value[place]), float(np.degrees(zeroed(found.angle, PLACED)[place]))

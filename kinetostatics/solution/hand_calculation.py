@@ -44,7 +44,7 @@ def explain(solution, quantity, angle, design=None):
 
 
 def _quantity(solution, name):
-    """The quantity of that name, none that only checks the solution, and its name without bars."""
+    """The quantity of a name (except those that only check the solution), and its name without bars."""
     known = {key: found for key, found in quantities.of_scene(solution).items() if found.kind != "check"}
     inner = quantities.without_bars(solution, name) if isinstance(name, str) else None
     if inner not in known:
@@ -74,7 +74,7 @@ def _steps(names, found, zeros):
 def _alone(solution, angle, design):
     """The solution of one design at one crank angle, with the checks of `solve`."""
     asked = crank_angles(angle, "explain")
-    checks.require("explain", None if asked.size == 1 else f"one crank angle is told at a time, got {asked.size}")
+    checks.require("explain", None if asked.size == 1 else f"give one crank angle, got {asked.size}")
     asked = float(asked.reshape(()))
     for hint in plausibility.single_angle_hints(asked):
         warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
@@ -85,21 +85,21 @@ def _alone(solution, angle, design):
 
 
 def _design(batch, design):
-    """Index of the design asked for, a tuple."""
+    """Index of the requested design, a tuple."""
     if design is None:
         if np.prod(batch, dtype=int) == 1:
             return (0,) * len(batch)
-        raise ParameterError(f"explain: one design is told at a time, of shape {batch}; say which, as design=0")
+        raise ParameterError(f"explain: choose one of the designs of shape {batch}, as design=0")
     place = design if isinstance(design, tuple) else (design,)
     fits = len(place) == len(batch) and all(
         isinstance(one, int | np.integer) and -count <= one < count for one, count in zip(place, batch, strict=True)
     )
-    checks.require("explain", None if fits else f"there is no design {design!r} among those of shape {batch}")
+    checks.require("explain", None if fits else f"design {design!r} is not among the designs of shape {batch}")
     return place
 
 
 def _index(solution, angle, place):
-    """Index of the angle among the crank angles given; None unless drive or loads are tables over them."""
+    """Index of the angle among the given crank angles; None unless drive or loads are tables over them."""
     if not tables_over_angles(solution):
         return None
     known = np.broadcast_to(solution.crank_angle, solution.shape)[place]

@@ -1,7 +1,7 @@
 """Inputs of a solution: its crank angles, its drive and loads, and every number of its scene by path.
 
-Paths are those of case files: "crank_length", "slider.mass". A number that is zero, or of a direction along an axis, is
-absent from the recorded program unless it is kept. Numbers far from usual values give hints at slips of units.
+Paths are those of case files: "crank_length", "slider.mass". A number that is zero, or part of a direction along an
+axis, is absent from the recorded program unless it is kept. Implausible numbers give hints at wrong units.
 """
 
 import math
@@ -70,7 +70,7 @@ def hint_at_angles(owner, given):
 
 
 def angle_problem(angle):
-    """Sentence if there are no crank angles, or one is not finite; else None. Foreign arrays are not read."""
+    """Sentence if there are no crank angles, or one is not finite; else None. Foreign arrays are not evaluated."""
     if not (angle.size if isinstance(angle, np.ndarray) else math.prod(angle.shape)):
         return "there are no crank angles"
     if not isinstance(angle, np.ndarray) or angle.dtype == object:
@@ -83,7 +83,7 @@ def angle_problem(angle):
 
 
 def tables_over_angles(item):
-    """Names of the drive and loads that have one value for each crank angle given, unknown between them."""
+    """Names of the drive and loads that have one value for each given crank angle and none between."""
     drive = ("crank_speed", item.crank_speed), ("crank_acceleration", item.crank_acceleration)
     loads = ((type(load).__name__, value_of(load)) for load in item.loads)
     return [
@@ -92,11 +92,11 @@ def tables_over_angles(item):
 
 
 def require_known_between_angles(item):
-    """Refuse drives and loads that are tables over the crank angles given."""
+    """Refuse drives and loads that are tables over the given crank angles."""
     varying = tables_over_angles(item)
     if varying:
         raise ParameterError(
-            f"{', '.join(varying)} is a table over the crank angles given, unknown between them; use a constant "
+            f"{', '.join(varying)} is a table over the given crank angles, without values between them; use a constant "
             "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
         )
 
@@ -155,7 +155,7 @@ class Parameters:
 
 
 def path_problem(scene, path, known=None):
-    """Sentence on a path that is none of the known ones, by default of all those of the scene; else None."""
+    """Sentence on an unknown path, else None; `known` are by default all paths of the scene."""
     problem = checks.choice("parameter", path, tuple(scene.places if known is None else known))
     is_other = problem and isinstance(path, str) and path not in scene.places
     place = paths.places_by_path(scene, absent=True).get(path) if is_other else None
@@ -164,7 +164,7 @@ def path_problem(scene, path, known=None):
     within = place.steps[:-1]
     others = [name for name, other in scene.places.items() if other.steps[: len(within)] == within]
     instead = getattr(place._replace(steps=within).value(scene), "instead", "")
-    beside = f"; beside it stand {', '.join(others)}" if others else ""
+    beside = f"; its neighbours are {', '.join(others)}" if others else ""
     return f"parameter {path} has no number here{instead}{beside}"
 
 
@@ -176,7 +176,7 @@ def leaf_by_path(places, state):
 
 
 def keep_numbers(scene, places, wanted):
-    """The scene with the wanted numbers kept in its programs, though they are zero or of an axis; unchecked."""
+    """The scene with the wanted numbers kept in its programs, even if zero or part of an axis; unchecked."""
     kept = {}
     for path in wanted:
         place = places[path]
@@ -213,7 +213,7 @@ def require_derivatives(owner, mechanism, paths, without):
         *(
             f"there is no derivative by {path}: "
             + (
-                "it is +1 or -1 and nothing between; solve with each"
+                "it is either +1 or -1; solve with each"
                 if path == "sense"
                 else f"{mechanism.name} passes change points, and with any other length it would be of another kind"
             )
@@ -226,7 +226,7 @@ def require_derivatives(owner, mechanism, paths, without):
 def passage_paths(places, mechanism, groups):
     """Paths that decide which change points some groups pass: pins of the crank, own lengths and guides.
 
-    For a group on a rocker also all lengths before it, which decide how that turns.
+    For a group on a rocker also all lengths before it, which determine the rocker's motion.
     """
     numbers = [number for number, group in enumerate(mechanism.groups) if group in groups]
     pins = {group.on for group in groups}
@@ -245,7 +245,7 @@ def passage_paths(places, mechanism, groups):
 
 
 class PlausibleNumber(NamedTuple):
-    """A number of a structure of scenes whose rule has usual values, by its place among the leaves.
+    """A number of a structure of scenes with a plausible range, by its place among the leaves.
 
     `is_in_extent`: whether it counts among the lengths of the mechanism together.
     """
@@ -257,7 +257,7 @@ class PlausibleNumber(NamedTuple):
 
 
 def scene_plausibility_test(kind):
-    """Fast test of a structure, see `plausibility_test`; it looks at all lengths of the mechanism together."""
+    """Fast test of a structure, see `plausibility_test`; it compares all lengths of the mechanism."""
     numbers = (item for item in kind.answer(plausible_numbers) if not item.is_in_extent)
     return plausibility_test(kind, [(item.leaf, item.usual) for item in numbers])
 
@@ -277,7 +277,7 @@ def plausible_numbers(kind):
 
 
 def plausibility_hints(solution):
-    """Sentences on numbers of a solution's scene that look like slips."""
+    """Sentences on numbers of a solution's scene that look like mistakes."""
     values = solution.apart[1].numbers
     numbers = [(path, values[leaf], usual) for path, leaf, usual, _ in solution.kind.answer(plausible_numbers)]
     mechanism = solution.mechanism

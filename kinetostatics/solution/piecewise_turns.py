@@ -1,7 +1,7 @@
 """Outputs of scenes with kinks: the turn of each design is split at the kinks of its loads, friction and cams.
 
-Each piece gets more crank angles until an output, as an extreme or a mean, is known to the share `goal` of its
-quantity's largest value. Angles in rad, values SI.
+Each piece gets more crank angles until the error of an output, such as a mean, is below `goal` times the
+largest value of its quantity. Angles in rad, values in SI.
 """
 
 import math
@@ -26,7 +26,7 @@ POINTS = 12
 START_ANGLES = 192
 """Crank angles of a turn at the start; enough for most outputs of a turn split at its kinks."""
 BLOCK_VALUES = 100_000
-"""Values over designs and angles that NumPy computes at a time; about as many fit into the cache."""
+"""Values over designs and angles that NumPy computes at a time; about this number fits into the cache."""
 
 
 def unchecked_turn(scene, angles):

@@ -39,13 +39,13 @@ from .parameters import (
 from .scene import scene_problem, unchecked_solution
 
 MAPPING_TYPES = (dict, MappingProxyType)
-"""Types that are accepted without the slower test for the protocol."""
+"""Types accepted without the slower test of the protocol."""
 FRICTION_ANGLES = 180
-"""Crank angles around the turn at which passes over friction are chosen."""
+"""Crank angles around the turn that decide the number of passes over friction."""
 
 
 class Program:
-    """Quantities of a scene as a program of crank angle and parameters; made by `compile`.
+    """Quantities of a scene as a program of crank angle and parameters; `compile` returns it.
 
     Attributes
     ----------
@@ -108,18 +108,19 @@ class Program:
         angle : float or array (..., N)
             Crank angles, rad; tables over the crank angles of the scene, a crank speed for instance, must fit them.
         values : mapping of path to float or array (designs, 1)
-            Other numbers, SI, checked as in a scene; all others stay.
+            New numbers, SI, checked as in a scene; all others keep their values.
 
         Returns
         -------
         dict of str to array
-            As the solution gives them: (..., N), vectors (2, ..., N); NaN where the mechanism does not close.
+            By quantity: scalars (..., N), vectors (2, ..., N), in the units of `Solution`; NaN where the mechanism does
+            not close.
 
         Raises
         ------
         ParameterError
-            No machine has such a value, or there is no such parameter: a number that is zero in the scene, or of a
-            direction along an axis, is absent unless `parameters` of `compile` names it.
+            A value is impossible, or a path is unknown. Numbers that are zero in the scene or part of a direction along
+            an axis are absent unless `parameters` of `compile` names them.
 
         Warns
         -----
@@ -157,7 +158,7 @@ class Program:
 
     @property
     def device(self):
-        """Processor: "cpu", or as JAX names it, "gpu: NVIDIA H100" for instance."""
+        """Processor: "cpu", or JAX's name for it, such as "gpu: NVIDIA H100"."""
         return self._backend.device
 
     def error_bound(self, angle, values=MappingProxyType({}), tight=False):
@@ -170,7 +171,7 @@ class Program:
         angle, values
             As for a call.
         tight : bool
-            Whether it may take twice as long, and be up to ten times smaller; in double precision, not by JAX.
+            As for `Solution.error_bound`; in double precision only, not with JAX.
 
         Returns
         -------
@@ -183,7 +184,7 @@ class Program:
         ParameterError
             Tight bounds are asked for of single precision, or of JAX.
         NotGivenError
-            Code of your own rounds in a way that is not known, or so does the device.
+            The rounding of your own code or of the device is unknown.
 
         Examples
         --------
@@ -196,15 +197,15 @@ class Program:
         checks.require("program", checks.truth("tight", tight))
         if tight and not self._is_own:
             raise ParameterError(
-                "program: there are tight bounds in double precision, by the engines compiled and numpy; this one runs "
-                f"by {self.engine} in {self.precision} precision, so leave tight out, or compile one of those"
+                "program: tight bounds exist in double precision with the engines compiled and numpy; this one runs "
+                f"by {self.engine} in {self.precision} precision, so leave tight out, or compile such a program"
             )
         state, leaves = self._at(angle, values)
         hint_at_angles(self.scene.mechanism.name, angle)
         return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves, tight)))
 
     def unlooked(self, angle, values, compiled):
-        """Values by quantity, compiled or not; the caller has checked the numbers, and checks friction."""
+        """Values by quantity, compiled or not; the caller checks numbers and friction."""
         numbers = list(self._leaves.numbers)
         for path, value in values.items():
             numbers[self._numbers[path][0]] = value
@@ -221,8 +222,8 @@ class Program:
         angle, values
             As for a call.
         by : str or sequence of str, optional
-            Paths; by default all parameters but lengths where change points are passed. The mapping `values` may also
-            come first, as in a call.
+            Paths; by default all parameters except lengths where change points are passed. The mapping `values` may
+            also come first, as in a call.
 
         Returns
         -------
@@ -232,8 +233,8 @@ class Program:
         Raises
         ------
         ParameterError
-            There is no such parameter, or it is a length of a mechanism that passes change points: any other length
-            makes another kind of it.
+            A parameter is unknown, or it is a length of a mechanism that passes change points: any other length
+            would make a mechanism of another kind.
         NotGivenError
             A cam or load of your own does more than arithmetic with sin, cos and sqrt.
         """
@@ -241,7 +242,7 @@ class Program:
         checks.require("program", None if by is None else checks.names("by", by))
         every = tuple(path for path in self.parameters if path not in self._fixed)
         names = every if by is None else ((by,) if isinstance(by, str) else tuple(by))
-        checks.require("program", None if names else "by names no parameter to derive by")
+        checks.require("program", None if names else "by is empty; name at least one parameter")
         self._require_known(names)
         require_derivatives("program", self.scene.mechanism, names, self._fixed)
         state, leaves = self._at(angle, values)
@@ -252,7 +253,7 @@ class Program:
 
     @property
     def unrecorded(self):
-        """Names of the user's code whose dependence on parameters is not recorded, a tuple."""
+        """Names of the user's functions whose dependence on parameters is not recorded, a tuple."""
         return self._program.unrecorded
 
     def depends_on(self, path):
@@ -305,9 +306,9 @@ class Program:
             varied = self.scene.varied(values)
             if lengths and varied.mechanism.passages != self._passages:
                 raise ParameterError(
-                    f"program: {self.scene.mechanism.name} with other values of {', '.join(sorted(lengths))} is of "
-                    "another kind (which change points it passes), whose arithmetic is another: change lengths "
-                    "together so that it stays, or compile a program of it"
+                    f"program: {self.scene.mechanism.name} with other values of {', '.join(sorted(lengths))} is "
+                    "of another kind (it passes other change points) and needs another program: change lengths "
+                    "together so that the kind stays, or compile a program of it"
                 )
         return numbers
 
@@ -324,12 +325,12 @@ class Program:
 
 
 def _names_and_values(by, values):
-    """Names to derive by and values, given in either order: only values are a mapping."""
+    """Parameter names and values, in either order: only values are a mapping."""
     if not isinstance(by, Mapping):
         return by, values
     if isinstance(values, Mapping) and values:
         raise ParameterError(
-            "program: by and values are both mappings: give the names to derive by as a list, "
+            "program: by and values are both mappings: give the parameter names as a list, "
             f"by={list(values)!r} for instance"
         )
     return None if isinstance(values, Mapping) else values, by
@@ -358,7 +359,7 @@ def _shape(angle, leaves):
 
 
 TRIAL_ANGLES = np.array([0.3, 2.0])
-"""Crank angles at which functions of loads are tested before they are recorded, rad."""
+"""Crank angles at which functions of loads are tested before recording, rad."""
 
 
 def compile(  # noqa: A001 - the contract's name
@@ -372,12 +373,12 @@ def compile(  # noqa: A001 - the contract's name
     quantities : str or sequence of str
         "balancing_torque", a joint (its reaction), "slider_acceleration", "coupler_rate" ...
     parameters : str or sequence of str
-        Paths of numbers that are zero in the scene and that calls may change; other zeros cost nothing.
+        Paths of numbers that are zero in the scene but that calls may change; other zeros cost no time.
     engine : "compiled", "numpy" or "jax"
-        By default compiled if numba is installed; "jax" (extra `grad`) runs on the accelerator that JAX finds.
+        By default "compiled" if numba is installed; "jax" (extra `grad`) runs on the accelerator that JAX finds.
     precision : "double" or "single"
-        Of the arithmetic at each crank angle and of the results. In single, sines of crank angles, tables and constants
-        of a design are still computed in double and rounded once; `Program.error_bound` bounds the error.
+        Precision of the arithmetic at each crank angle and of the results. With "single", sines of crank angles, tables
+        and constants of a design are still computed in double and rounded once; `Program.error_bound` bounds the error.
     device : str, optional
         For JAX: "cpu", "gpu" or another platform instead of the first that it has.
 
@@ -388,9 +389,9 @@ def compile(  # noqa: A001 - the contract's name
     Raises
     ------
     ParameterError
-        The scene has no such parameter, JAX no such device, or a function of a load is not pure.
+        A parameter or device is unknown, or a function of a load is not pure.
     QuantityError
-        The mechanism has no such quantity; the message lists those it has.
+        The quantity is unknown; the message lists those of the mechanism.
     NotGivenError
         A group or load of your own does more than arithmetic with sin, cos and sqrt, so it cannot be recorded.
     MissingLibraryError
@@ -433,7 +434,7 @@ def compile(  # noqa: A001 - the contract's name
 
 
 def _device_problem(device, engine):
-    """Sentence on an impossible device, else None; whether it exists is asked later."""
+    """Sentence on an impossible device, else None; its existence is tested later."""
     if engine != "jax":
         return 'device is for engine="jax"; all others run on the processor'
-    return None if isinstance(device, str) else f'device must be a text as "gpu", got {checks.shown(device)}'
+    return None if isinstance(device, str) else f'device must be a text such as "gpu", got {checks.shown(device)}'

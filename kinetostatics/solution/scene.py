@@ -1,4 +1,4 @@
-"""A scene, a mechanism with its drive and loads; `solve` checks it and makes its solution."""
+"""Scene: a mechanism with its drive and loads; `solve` checks it and returns its solution."""
 
 import math
 import warnings
@@ -41,12 +41,12 @@ PARTS = (*SceneParts._fields, "resolution")
 """Fields of a scene that its solutions share."""
 read_parts = attrgetter(*PARTS)
 MIN_VALUES_COMPILED = 1_000_000
-"""Crank angles times designs from which a compiled loop is worth its preparation."""
+"""Crank angles times designs above which a compiled loop saves time."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene(Parameters):
-    """A mechanism with its drive and loads: all that a solution needs but the crank angles.
+    """A mechanism with its drive and loads: the input of a solution without the crank angles.
 
     Parameters
     ----------
@@ -57,16 +57,16 @@ class Scene(Parameters):
     loads : sequence
         `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them.
     friction : dict of str to friction, optional
-        By joint, as for `solve`.
+        Friction by joint, as for `solve`.
     sense : +1, -1 or array, optional
-        Which way a crank at rest is about to turn, as for `solve`.
+        Sense in which a crank at rest is about to turn, as for `solve`.
     resolution : float, optional
         Step of crank angles, rad, at which load functions without `kinks` are sampled, as for `solve`.
 
     Raises
     ------
     ParameterError
-        A value is not finite, or a load acts on a link or joint that is not there.
+        A value is not finite, or a load names an unknown link or joint.
 
     Examples
     --------
@@ -112,7 +112,7 @@ class Scene(Parameters):
 
     @classmethod
     def of(cls, solution):
-        """The scene of a solution: all of it but its crank angles.
+        """The scene of a solution: the solution without its crank angles.
 
         Examples
         --------
@@ -131,7 +131,7 @@ class Scene(Parameters):
 
     @property
     def parameters(self):
-        """Every number of the scene by path, zeros too, as in case files: "crank_length", "slider.mass" ..."""
+        """Every number of the scene by path, including zeros, as in case files: "crank_length", "slider.mass" ..."""
         return {path: place.value(self) for path, place in self.places.items()}
 
     @property
@@ -140,7 +140,7 @@ class Scene(Parameters):
         return {path: place.rule.unit for path, place in self.places.items()}
 
     def varied(self, values):
-        """The scene with other values at some paths, SI, checked as when it was made.
+        """The scene with other values at some paths, SI, checked as by the constructor.
 
         Parameters
         ----------
@@ -149,7 +149,7 @@ class Scene(Parameters):
         Raises
         ------
         ParameterError
-            There is no such path, or no machine has such a value.
+            A path is unknown, or a value is impossible.
         """
         known = self.places
         checks.require("scene", checks.mapping("values", values))
@@ -162,7 +162,7 @@ class Scene(Parameters):
         Parameters
         ----------
         angles : int, float or array
-            A whole number is a count of even angles over one period from 0, end excluded; all else are angles, rad.
+            An int is the number of even angles over one period from 0, end excluded; floats and arrays are angles, rad.
         on_gap, engine
             As for `solve`.
         """
@@ -173,7 +173,7 @@ class Scene(Parameters):
         return Solution(crank_angle=angle, **self._parts)
 
     def dynamics(self, angle):
-        """Motion and forces at crank angles as engines take them, without any check."""
+        """Motion and forces at crank angles for engines, without any check."""
         return Dynamics(crank_angle=angle, **{name: getattr(self, name) for name in SceneParts._fields})
 
     @property
@@ -182,10 +182,10 @@ class Scene(Parameters):
         return dict(zip(PARTS, read_parts(self), strict=True))
 
     def check_resolution(self, step=None):
-        """Look for features of load functions without `kinks` that the resolution misses.
+        """Test whether the resolution misses features of load functions without `kinks`.
 
-        Every such function is sampled at the crank angles of `step`, and compared with what its samples at the
-        resolution of the scene let expect. Differences below 1e-5 of its largest value do not count.
+        Every load function is sampled at crank angles of `step` and compared with the interpolation of its samples at
+        the resolution of the scene. Differences below 1e-5 of its largest value do not count.
 
         Parameters
         ----------
@@ -217,7 +217,7 @@ class Scene(Parameters):
         return check_resolution(solution, samples_of_functions(solution), step)
 
     def turn(self, angles):
-        """Even crank angles over one period from 0, end excluded; anything but a whole number is returned as it is."""
+        """Even crank angles over one period from 0, end excluded; anything but an int is returned unchanged."""
         if not isinstance(angles, int | np.integer) or isinstance(angles, bool):
             return angles
         checks.require("solve", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE))
@@ -225,7 +225,7 @@ class Scene(Parameters):
 
 
 def scene_problem(value):
-    """Sentence on an argument that is no scene, else None; a variant of a case and others have a `.scene`."""
+    """Sentence on an argument that is no scene, else None; case variants and others have a `.scene`."""
     if isinstance(value, Scene):
         return None
     hint = "; give its .scene" if isinstance(getattr(value, "scene", None), Scene) else ""
@@ -253,45 +253,45 @@ def solve(
         As made by `crank_slider`, `cam_crank_slider` or from a crank and groups of your own.
     crank_angle : array (..., N)
         rad, counter-clockwise from +x; the last axis is the turn, axes before it broadcast with designs. A single
-        number is one angle, a whole one too: a count is taken by `Scene.solve`.
+        number, even an int, is one angle; `Scene.solve` accepts a number of angles.
     crank_speed, crank_acceleration : float or array
         rad/s and rad/s2, counter-clockwise positive.
     loads : sequence
-        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them. Arrays and loads of
-        your own are copied: later changes of them have no effect. A function must be pure: engines call it as often as
-        they need.
+        `Gravity`, `Spring`, `Force`, `Torque` and the others of `machine.loads`, or one of them. Arrays and your own
+        loads are copied, so later changes have no effect. A function must be pure, because engines call it any number
+        of times.
     friction : dict of str to friction, optional
         By joint, named as its reaction ("O", "A", "guide"), "slot" or "cam", each with the label of its group: a
         `PinFriction`, `GuideFriction`, `SlotFriction` or `RollerFriction`. At crank speed 0 it acts against the motion
-        that is about to begin: that of `sense`, or of the crank acceleration.
+        that is about to begin, according to `sense` or the crank acceleration.
     sense : +1, -1 or array, optional
-        Which way a crank at rest is about to turn, counter-clockwise positive: friction, and tables with values for the
-        stroke back, depend on it. Unless given, the sign of the crank speed, at rest of the crank acceleration.
+        Sense in which a crank at rest is about to turn, positive counter-clockwise. Friction, and tables with values
+        for the return stroke, depend on it. By default the sign of the crank speed, at rest of the crank acceleration.
     resolution : float
-        Step of crank angles, rad, at which extremes, means, sweeps, searches and drives sample load functions that
-        declare no `kinks`, from 1e-5 rad to 0.25 deg; by default 0.05 deg. They close in on every jump between two
-        samples, and find every pulse that is wider than the step.
+        Step of crank angles, rad, at which extremes, means, sweeps, searches and drives sample load functions without
+        `kinks`, from 1e-5 rad to 0.25 deg; by default 0.05 deg. They locate every jump between two samples, and every
+        pulse wider than the step.
     on_gap : "raise" or "nan"
-        What to do where the mechanism cannot be assembled: raise `AssemblyError` with the crank-angle intervals, or
-        give NaN there and exact values elsewhere (as needed under ``jax.jit``). If one of several groups is open, NaN
-        are its motion and forces and those of groups attached to it, the forces of groups that carry it, and all
-        quantities of the crank or the whole mechanism (torque, "O", shaking, inertia, energies); the rest stays.
+        Action where the mechanism cannot be assembled. "raise": `AssemblyError` with the crank-angle intervals. "nan":
+        NaN there and exact values elsewhere (as needed under ``jax.jit``). If one of several groups is open, NaN are
+        its motion and forces and those of groups attached to it, the forces of groups that carry it, and all quantities
+        of the crank or the whole mechanism (torque, "O", shaking, inertia, energies).
     engine : "numpy" or "compiled"
-        "compiled" runs the same kernels as one loop compiled by numba (extra `fast`) for each quantity: the first time
-        takes about a second, then machine code is kept on disk. By default it is used from a million crank angles
-        (designs times angles) on, if numba is installed. Results agree to a few ulp.
+        "compiled" runs the same kernels as one loop per quantity, compiled by numba (extra `fast`). The first call
+        takes about a second; then the machine code is on disk. By default it is used from a million crank angles
+        (designs times angles), if numba is installed. Results agree to a few ulp.
 
     Returns
     -------
     Solution
-        Lazy: results are computed when first read, and kept; they cannot be written to.
+        Each result is computed when first read, and cached; arrays are read-only.
 
     Raises
     ------
     AssemblyError
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
-        A value is not finite, a load acts on a link or joint that is not there, or has no value at a crank angle, as a
+        A value is not finite, a load names an unknown link or joint, or has no value at a crank angle, as a
         force between points that meet, or its function is not pure.
     MissingLibraryError
         ``engine="compiled"`` without numba.
@@ -303,10 +303,11 @@ def solve(
     ConditionWarning
         Half of the digits are lost at some crank angle: `Solution.condition` exceeds 1e8.
     HintWarning
-        Something looks like a slip: angles in degrees, a count of angles, lengths in mm, a speed in rpm, hardly any
+        Something looks like a mistake: angles in degrees, a count of angles, lengths in mm, a speed in rpm, hardly any
         inertia.
     UserWarning
-        The crank angles are in single precision; forces of a group of your own lose power (when they are computed).
+        The crank angles are in single precision; forces of your own group violate the power balance (found when they
+        are computed).
 
     Examples
     --------
@@ -348,20 +349,20 @@ def _start(scene, crank_angle, on_gap, engine):
 
 
 def scene_hints(solution):
-    """Sentences on numbers of the scene that look like slips; the full test runs only if the fast one fails."""
+    """Sentences on numbers of the scene that look like mistakes; the full test runs only if the fast one fails."""
     _, may_be = solution.first_look or (None, True)
     return parameters.plausibility_hints(solution) if may_be else ()
 
 
 def unchecked_solution(scene, crank_angle, engine=None):
-    """The solution that `solve` returns, before hints at slips and before `Solution.check`."""
+    """The solution that `solve` returns, before hints and before `Solution.check`."""
     angle = crank_angles(crank_angle)
     solution = construct_unchecked(Solution, crank_angle=angle, **scene._parts)
     wrong = None if 0.0 < solution.farthest < math.inf else angle_problem(angle)
     checks.require("solve", wrong, None if engine is None else checks.choice("engine", engine, ENGINES))
     if angle.dtype == "float32":
         warnings.warn(
-            "crank angles are in single precision, so are the results: about 7 digits, 8 fewer than in double; under "
+            "crank angles are in single precision, so the results have about 7 digits, 8 fewer than in double; under "
             'JAX switch jax.config.update("jax_enable_x64", True) on first',
             stacklevel=4,
         )
@@ -373,7 +374,7 @@ def unchecked_solution(scene, crank_angle, engine=None):
     is_large = math.prod(solution.shape) >= MIN_VALUES_COMPILED
     if engine == "compiled":
         if not is_plain(angle):
-            raise ParameterError('solve: engine="compiled" takes crank angles in double precision; use engine="numpy"')
+            raise ParameterError('solve: engine="compiled" needs crank angles in double precision; use engine="numpy"')
         require_numba()
         vars(solution)["engine"] = COMPILED
     elif engine is None and is_large and is_plain(angle) and numba_available():
@@ -386,11 +387,11 @@ def _sense(owner, given, speed):
     sense, problem = SENSE.check(given, "sense")
     ways, rates = None if problem else concrete_array(sense), concrete_array(speed)
     if ways is not None and np.any(np.abs(ways) != 1.0):
-        problem = f"sense must be +1 or -1, the way the crank is about to turn, got {checks.shown(given)}"
+        problem = f"sense must be +1 or -1, the sense in which the crank is about to turn, got {checks.shown(given)}"
     elif ways is not None and rates is not None and np.any(rates * ways < 0.0):
         problem = (
             f"sense is for a crank at rest: {checks.shown(given)} contradicts crank_speed {checks.shown(speed)}; leave "
-            "sense out, the speed tells it"
+            "sense out, as the speed determines it"
         )
     checks.require(owner, problem)
     return sense
@@ -401,8 +402,8 @@ def mechanism_problem(found):
     if isinstance(found, Mechanism):
         return None
     itself = not isinstance(found, type) and hasattr(found, "solve")
-    remedy = "; it is solved by its own .solve(angles), with its own drive and loads" if itself else ""
-    return f"mechanism must be a Mechanism, as made by crank_slider or four_bar, got {checks.shown(found)}{remedy}"
+    remedy = "; call its .solve(angles), which has its drive and loads" if itself else ""
+    return f"mechanism must be a Mechanism, as crank_slider or four_bar returns, got {checks.shown(found)}{remedy}"
 
 
 def _shapes(scene, angle):
@@ -424,7 +425,7 @@ def _period_problem(loads):
     if turns <= MAX_TURNS:
         return None
     each = ", ".join(f"{getattr(item, 'period', TURN) / TURN:.6g}" for item in loads)
-    return f"loads that repeat after {each} turns do so together after {turns:.6g} only, {MAX_TURNS} at most"
+    return f"loads that repeat after {each} turns repeat together only after {turns:.6g}; {MAX_TURNS} are allowed"
 
 
 def _load_problems(mechanism, item):

@@ -21,6 +21,7 @@ from ..errors import ConditionWarning
 from ..machine.cams.profile import POSITIVE
 from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property
 from ..numbers.planar import cross, dot
 
@@ -106,6 +107,8 @@ class SectionPeak(NamedTuple):
     value: float
     x: float
     angle: float
+
+    __repr__ = repr_with_units(x="m", angle="rad")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -272,7 +275,7 @@ class WithSections:
             Mass, centre or inertia of the bar are not those of the link; a force on the link acts off the line of its
             pins, moves along it, or is a couple without a place; the mechanism does not close all round; a batch.
         QuantityError
-            There is no such link.
+            The link is unknown.
 
         Examples
         --------

@@ -111,7 +111,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
     measure(name), at(crank_angle)
     condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
-    explain(quantity, angle, design), shares(quantity), sections(link, bar, at), frame()
+    explain(quantity, angle, design), shares(quantity), sections(link, bar, at), frame(units)
 
     Notes
     -----
@@ -510,7 +510,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         Raises
         ------
         QuantityError
-            There is no such quantity; the message lists those there are.
+            The quantity is unknown; the message lists the known ones.
         AssemblyError
             The mechanism does not close at that crank angle.
         ParameterError
@@ -528,11 +528,11 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
         return explain(self, quantity, angle, design)
 
-    def frame(self):
-        """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""
+    def frame(self, units=None):
+        """All results, one row for each crank angle (and design), a pandas DataFrame in `units` as of `in_units`."""
         from .tables import solution_frame
 
-        return solution_frame(self)
+        return solution_frame(self, units)
 
     # How a quantity is asked of the engine
 

@@ -15,13 +15,16 @@ from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import LOAD_FREE_KINDS, of_scene
 from ..numbers import paths
 from ..numbers.formatting import number, round_uncertainty_up
+from ..numbers.output_units import output_units
 from .certainty import Doubt, doubt_text
 from .columns import columns_of
 from .parameters import Parameters
 
 
-def solution_frame(solution):
+def solution_frame(solution, units=None):
     """One row for each crank angle (and design), units in the column names, as a pandas DataFrame.
+
+    `units` is a dict of dimension to unit as of `in_units`.
 
     Warns
     -----
@@ -39,7 +42,7 @@ def solution_frame(solution):
     if len(shape) > 1:
         designs = np.prod(shape[:-1], dtype=int)
         table.insert(0, "design", np.repeat(np.arange(designs), shape[-1]))
-    return table
+    return output_units(units, "frame").table(table)
 
 
 def _warn_of_rows_without_digits(solution):

@@ -1,9 +1,9 @@
 """The computation of a chunk of designs: one batch, reduced to a row of numbers for each design.
 
-`_compute_designs` separates designs that cannot be built or solved, each with its reason; the others stay one batch.
+`_compute_designs` separates designs that cannot be built or solved, each with its reason; the others stay in one batch.
 The loop over designs and crank angles runs block by block, so that values over the turn stay in the cache. `dry_run`
-computes one design before the sweep to choose engine and crank angles. Designs whose outputs the crank angles do not
-resolve are computed again with twice as many.
+computes one design before the sweep to choose engine and crank angles. Designs whose outputs are not resolved by the
+crank angles are computed again with twice as many.
 """
 
 import math
@@ -36,11 +36,11 @@ from ..solution.piecewise_turns import BLOCK_VALUES, START_ANGLES, PiecewiseTurn
 from ..solution.scene import Scene, scene_hints
 
 MAX_SPLIT_DESIGNS = 128
-"""Designs whose turns are split at kinks together: enough to hide the cost of a call, few enough for the memory."""
+"""Number of designs whose turns are split at kinks together: a compromise of call overhead and memory."""
 MAX_LOOP_VALUES = 40_000
 """Values of all quantities over designs and angles in a block of the compiled loop: a third of a core's cache."""
 PARTS_PER_THREAD = 8
-"""Parts of a chunk for each thread, so that threads end at about the same time."""
+"""Number of parts of a chunk per thread, so that threads end at about the same time."""
 
 
 def compute_batch(scene, job, count, outputs):
@@ -55,11 +55,11 @@ def compute_batch(scene, job, count, outputs):
     made = math.prod(solution.shape[:-1])
     if made not in (1, count):
         raise ParameterError(
-            f"the scene made has designs of shape {solution.shape[:-1]}, not ({count},): arrays must have the shape "
-            "(designs, 1) of the values handed in"
+            f"the scene returned has designs of shape {solution.shape[:-1]}, not ({count},): arrays need the shape "
+            "(designs, 1) of the given values"
         )
     if count == solution.shape[-1] > 1 and tables_over_angles(scene):  # ambiguous; the caller tries fewer designs
-        raise ParameterError(f"an array of shape ({count},) may be of so many designs, or of so many crank angles")
+        raise ParameterError(f"an array of shape ({count},) is ambiguous: its axis may be designs or crank angles")
     kinked = np.array([has_kinks(solution, item.quantity, job.kink_tolerance) for item in outputs])
     smooth = [item for item, split in zip(outputs, kinked, strict=True) if not split]
     numbers, gaps = np.empty((len(smooth), made)), np.zeros(made, dtype=int)
@@ -110,7 +110,7 @@ def _reduce_by_loop(solution, outputs, threads, *found):
 
 
 def _reduce_by_numpy(solution, outputs, numbers, rough, gaps, nearest):
-    """The same by NumPy, all designs at once."""
+    """Write the results by NumPy, all designs at once."""
     shape, turns = (gaps.size, solution.shape[-1]), round(solution.period / TURN)
     with np.errstate(all="ignore"):
         values = {name: np.reshape(component_sizes(solution, name)[0], shape) for name in quantity_names(outputs)}
@@ -130,7 +130,7 @@ def _split_turns(scene, job, outputs):
 
 
 MAX_PROBED_DESIGNS = 64
-"""Designs that a dry run tries, until one can be built."""
+"""Largest number of designs that a dry run tries."""
 MIN_ANGLES = 12
 """Smallest number of crank angles of a sweep."""
 MIN_ANGLES_PER_TURN = 180
@@ -144,7 +144,7 @@ class Job:
     Attributes
     ----------
     make, make_reference : function
-        From values in SI by name to a `Scene`, or an object with one; the reference's is None without ratios.
+        From values in SI by name to a `Scene`, or an object with a scene; None for the reference without ratios.
     columns : tuple of (column, name, factor)
         Columns of the parameters in the table of designs.
     outputs, numbers : tuple
@@ -158,11 +158,11 @@ class Job:
     kinked : bool
         Whether tables or friction cause kinks in an output, so that its turn may be split.
     kink_tolerance : float
-        Change of slope of a table, relative to its largest value, from which on the turn is split there.
+        Change of slope of a table, relative to its largest value, above which the turn is split there.
     hints : tuple of HintWarning
         Implausible values of the design of the dry run, and load functions that change between their samples.
     resolution : str
-        Sentence on the resolution of load functions without `kinks`; empty where none acts.
+        Sentence on the resolution of load functions without `kinks`; empty if there are none.
     """
 
     make: Callable[[dict], Any]
@@ -202,7 +202,7 @@ class Job:
         return np.reshape(rows, (len(rows), len(frame))).T
 
     def values(self, given):
-        """Arguments of the functions, to try in turn: arrays, and for a single design plain numbers."""
+        """Alternative arguments of the functions: arrays, and for a single design plain numbers."""
         names = (name for _, name, _ in self.columns)
         arrays = dict(zip(names, given.T.copy()[..., None], strict=True))  # a copy: functions may change it
         return [arrays] if len(given) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
@@ -215,9 +215,9 @@ class _NoSceneError(ParameterError):
 def dry_run(job, designs, engines):
     """The job with the first engine that supports the mechanism, and with units of outputs; None if no design is valid.
 
-    Raises errors that concern every design: `QuantityError` for a quantity that the mechanism does not have,
-    `ParameterError` for a function that returns no scene, too few crank angles, or loads that do not repeat after their
-    period, `NotGivenError` if no engine supports the mechanism.
+    Errors that concern every design are raised. `QuantityError`: the mechanism lacks a quantity. `ParameterError`: a
+    function returns no scene, there are too few crank angles, or loads do not repeat after their period.
+    `NotGivenError`: no engine supports the mechanism.
     """
     few = (
         None
@@ -291,7 +291,7 @@ NEGLIGIBLE_SHARE = 1e-12
 MAX_ANGLES = 5760
 """Largest number of crank angles, by doubling, for designs whose outputs are not resolved."""
 ANGLES_TOLERANCE = 1e-3
-"""Relative change of an output, when even crank angles are doubled, that counts as none."""
+"""Negligible relative change of an output when even crank angles are doubled."""
 KINK_REFINEMENT = 16
 """Factor by which `kink_tolerance` falls when the crank angles are doubled."""
 FAILED = "failed"
@@ -318,7 +318,7 @@ def run_chunk(job, frame) -> pd.DataFrame:
             numbers[count:, row], reasons[row] = _solution_numbers(job, given[row : row + 1])
     for row in np.flatnonzero(np.isnan(numbers).any(axis=0) & (reasons == "")):
         wrong = (str(item) for item, number in zip(job.items, numbers[:, row], strict=True) if np.isnan(number))
-        reasons[row] = f"{', '.join(wrong)} is no number, such as 0 / 0"
+        reasons[row] = f"{', '.join(wrong)} is not a number, as for 0 / 0"
     return result_table(job, frame, numbers, reasons)
 
 
@@ -355,7 +355,7 @@ def result_table(job, frame, numbers, reasons):
 
 
 def _compute_designs(make, job, given, outputs, earlier=None, refused=False):
-    """Numbers (outputs, designs) and reasons (designs,) why a scene cannot be made or solved; none without outputs.
+    """Numbers (outputs, designs) and reasons (designs,) why a scene cannot be made or solved, if there are outputs.
 
     A single design is an array of one, so that results do not depend on the batch. `earlier` are the numbers from half
     as many crank angles; `refused` means that arrays of a single design fail.
@@ -378,7 +378,7 @@ def _compute_designs(make, job, given, outputs, earlier=None, refused=False):
         parts = np.array_split(np.arange(count), 2)
     else:
         wrong = _find_unbuildable(make, job, given) if wrong is None else wrong
-        alone = np.flatnonzero(wrong if wrong.any() else ~wrong)  # if all fail as arrays, each is computed alone
+        alone = np.flatnonzero(wrong if wrong.any() else ~wrong)  # if all fail as arrays, each is computed separately
         parts = [np.delete(np.arange(count), alone), *alone[:, None]]
     numbers, reasons = np.empty((len(outputs), count)), np.empty(count, dtype=object)
     for part in parts:
@@ -413,7 +413,7 @@ def _refine_angles(make, job, given, outputs, found, earlier):
         for row in again:
             wrong = [str(item) for item, wrong in zip(outputs, rough[:, row], strict=True) if wrong or narrow[row]]
             reasons[row] = f"{', '.join(wrong)} is not resolved by {job.angles} crank angles" + (
-                f": it passes so near a limit position at {np.degrees(nearest[row]):.6g} deg"
+                f": it passes close to a limit position at {np.degrees(nearest[row]):.6g} deg"
                 if narrow[row]
                 else "; if a load jumps, let it rise over a degree"
             )
@@ -421,7 +421,7 @@ def _refine_angles(make, job, given, outputs, found, earlier):
 
 
 def _noise_by_design(make, job, given, outputs, asked):
-    """Which of the outputs asked for, (outputs, designs), are constant over the turn but for rounding."""
+    """Mask (outputs, designs) of the outputs that are constant over the turn to rounding."""
     found, designs = np.zeros(asked.shape, dtype=bool), np.flatnonzero(asked.any(axis=0))
     wanted = {row: outputs[row] for row in np.flatnonzero(asked.any(axis=1))}
     for start in range(0, designs.size, MAX_SPLIT_DESIGNS):
@@ -440,7 +440,7 @@ def _noise_by_design(make, job, given, outputs, asked):
 
 
 def _check_near_limits(make, job, given, nearest, outputs):
-    """Reasons of designs that do not close or lose all digits between crank angles, and whether peaks may hide there.
+    """Reasons of designs that do not close or lose all digits between crank angles, and whether peaks may be there.
 
     Each design is computed again around the crank angle nearest to a limit position.
     """
@@ -465,7 +465,7 @@ def _check_near_limits(make, job, given, nearest, outputs):
 
 
 def _designs_at_fault(error, count):
-    """Mask of the designs that an error names; None if it names none."""
+    """Mask of the designs that an error names; None if it names no design."""
     wrong: Any = getattr(error, "designs", None)
     return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
 

@@ -48,7 +48,7 @@ class ChunkResults:
 
 
 class Dataset(ChunkResults):
-    """The same as a folder of Parquet files, each written whole or not at all.
+    """Chunk results in a folder of Parquet files, each written whole or not at all.
 
     Each file has a signature: its sweep, its chunk and a digest of its content. A file without the right signature is
     computed again, with a `CacheWarning`. Equal sweeps may share the folder at the same time.
@@ -56,7 +56,7 @@ class Dataset(ChunkResults):
     Raises
     ------
     ParameterError
-        The folder cannot be used, or contains another sweep (its identity, a dict of texts and numbers, differs) or
+        The folder cannot be used, or contains another sweep (with another identity, a dict of texts and numbers) or
         files without a manifest.
     """
 
@@ -76,7 +76,7 @@ class Dataset(ChunkResults):
                 len(unsound) > MAX_LISTED_FILES
             )
             warnings.warn(
-                f"sweep: in {self._folder} these are no parts of it as it wrote them, and are made anew or left out: "
+                f"sweep: in {self._folder} these files are not parts of this sweep and are computed again or left out: "
                 f"{listed}",
                 CacheWarning,
                 stacklevel=3,
@@ -97,7 +97,7 @@ class Dataset(ChunkResults):
                 parquet.write_table(table.replace_schema_metadata({**table.schema.metadata, **told}), temporary)
         except (OSError, pa.ArrowException) as error:
             raise KinetostaticsError(
-                f"sweep: {path} cannot be written: {error}; what is done is kept, and the same call goes on from there"
+                f"sweep: {path} cannot be written: {error}; finished chunks stay, and the same call goes on"
             ) from error
 
     def table(self):
@@ -118,7 +118,7 @@ class Dataset(ChunkResults):
             strange = [path for path in self._folder.glob("part-*.parquet") if self._problem(path)]
             if strange:
                 raise ParameterError(
-                    f"sweep: {self._folder} holds {strange[0].name}, but no {MANIFEST} with the identity of its sweep; "
+                    f"sweep: {self._folder} contains {strange[0].name}, but no {MANIFEST} that identifies its sweep; "
                     "give another folder"
                 )
             _write_new(manifest, json.dumps(identity, indent=1))
@@ -126,7 +126,7 @@ class Dataset(ChunkResults):
         differing = [name for name, value in identity.items() if before.get(name) != value]
         if differing:
             raise ParameterError(
-                f"sweep: {self._folder} holds another sweep, which differs in {', '.join(differing)}; give another "
+                f"sweep: {self._folder} contains another sweep, which differs in {', '.join(differing)}; give another "
                 "folder, or delete that one"
             )
 
@@ -134,12 +134,12 @@ class Dataset(ChunkResults):
         return self._folder / f"part-{number:06d}.parquet"
 
     def _problem(self, path):
-        """Why a file is not an undamaged part of this sweep, or None."""
+        """Reason why a file is not an undamaged part of this sweep, or None."""
         if not path.is_file():
             raise ParameterError(f"sweep: {path} is no file; remove it, or give another folder")
         number = path.stem.removeprefix("part-")
         if not (number.isdecimal() and int(number) in self.numbers and path == self._path(int(number))):
-            return "the sweep has no such chunk"
+            return "the sweep does not have this chunk"
         try:
             self._read(int(number))
         except _DamagedPartError as error:
@@ -157,11 +157,11 @@ class Dataset(ChunkResults):
                 frame = pd.read_parquet(file)
         except KeyError as error:
             raise _DamagedPartError("it does not name its sweep") from error
-        except Exception as error:  # whatever a damaged file leads to
+        except Exception as error:  # any error from a damaged file
             raise _DamagedPartError(f"it cannot be read: {error}") from error
         for name, value in self._signature(number, frame).items():
             if not isinstance(told, dict) or told.get(name) != value:
-                raise _DamagedPartError(f"another {name} than was written")
+                raise _DamagedPartError(f"the {name} differs from the written one")
         return frame
 
     def _signature(self, number, frame):
@@ -195,10 +195,10 @@ def _read_manifest(manifest):
     """Identity of a sweep from its manifest."""
     try:
         if not manifest.is_file() or manifest.stat().st_size > MAX_MANIFEST_BYTES:
-            raise ValueError("it is no such file")
+            raise ValueError("it is not a manifest")
         found = json.loads(manifest.read_text(encoding="utf-8"))
         if not isinstance(found, dict):
-            raise ValueError(f"it holds no table but {str(found)[:40]!r}")
+            raise ValueError(f"it contains no table but {str(found)[:40]!r}")
     except (ValueError, RecursionError) as error:
         raise ParameterError(
             f"sweep: {manifest} does not name the sweep of the folder: {error}; give another folder, or delete it"

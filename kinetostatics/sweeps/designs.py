@@ -1,7 +1,7 @@
 """Tables of designs to sweep: grids and samples of parameters from texts.
 
-A spread is a text: "600..900 kN/m" (uniform; ":40" at the end gives the number of values of a grid), or for samples
-also "normal 712 kN/m +- 5 kN/m" (mean and standard deviation) and "triangular 690..710..740 kN/m" (low, likeliest,
+A spread is a text. "600..900 kN/m" is uniform; ":40" at the end gives the number of values of a grid. Samples also
+accept "normal 712 kN/m +- 5 kN/m" (mean and standard deviation) and "triangular 690..710..740 kN/m" (low, likeliest,
 high). The unit of a plain number is 1. Pint quantities are accepted too: the values of a grid, and for samples
 ``(low, high)``, ``("normal", mean, deviation)`` and ``("triangular", low, likeliest, high)``.
 """
@@ -33,13 +33,13 @@ __all__ = [
 
 
 def grid(spreads) -> pd.DataFrame:
-    """Every combination of evenly spaced values, the last parameter running fastest.
+    """Every combination of evenly spaced values, the last parameter varies fastest.
 
     Parameters
     ----------
     spreads : dict of parameter to text or quantities
-        Such as ``{"spring.stiffness": "600..900 kN/m:40", "cam.centre.x": "-30..-10 mm:20"}``; of pint quantities all
-        values.
+        For example ``{"spring.stiffness": "600..900 kN/m:40", "cam.centre.x": "-30..-10 mm:20"}``; pint quantities list
+        all values.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def grid(spreads) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, or its unit not known or of another dimension than machines have by that name.
+        A spread has another form, or its unit is unknown or of the wrong dimension for a known parameter.
 
     Examples
     --------
@@ -64,16 +64,16 @@ def grid(spreads) -> pd.DataFrame:
 
 
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
-    """Designs spread evenly over every parameter by itself (Latin hypercube).
+    """Designs spread evenly over each single parameter (Latin hypercube).
 
     Parameters
     ----------
     spreads : dict of parameter to text or quantities
         As for `sample`.
     count : int
-        Designs; one in each of as many equal parts of every parameter.
+        Number of designs; each equal part of the range of a parameter contains one.
     seed : int
-        Of the random numbers.
+        Seed of the random numbers.
 
     Returns
     -------
@@ -83,8 +83,8 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, its unit not known or of another dimension than machines have by that name, or
-        there are more designs than a table can hold.
+        A spread has another form, its unit is unknown or of the wrong dimension for a known parameter, or
+        there are more designs than a table allows.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
 def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """Designs of a scrambled Sobol sequence, evenly spread over all parameters together.
 
-    Arguments `spreads`, `count`, best a power of two, and `seed`, and errors as for `latin_hypercube`.
+    Arguments and errors as for `latin_hypercube`; `count` is best a power of two.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
 def random(spreads, count, seed=0) -> pd.DataFrame:
     """Independent random designs.
 
-    Arguments `spreads`, `count` and `seed`, and errors as for `latin_hypercube`.
+    Arguments and errors as for `latin_hypercube`.
 
     Examples
     --------
@@ -142,10 +142,10 @@ def sample(spreads, uniform) -> pd.DataFrame:
     Parameters
     ----------
     spreads : dict of parameter to text or quantities
-        "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m"; of pint quantities
+        "600..900 kN/m", "normal 712 kN/m +- 5 kN/m", "triangular 690..710..740 kN/m"; or as pint quantities
         ``(low, high)``, ``("normal", mean, deviation)``, ``("triangular", low, likeliest, high)``.
     uniform : array (designs, parameters) or function
-        The numbers, a column for each parameter; a function gives them for a number of parameters.
+        The numbers, a column for each parameter; a function returns them for a number of parameters.
 
     Returns
     -------
@@ -155,8 +155,8 @@ def sample(spreads, uniform) -> pd.DataFrame:
     Raises
     ------
     ParameterError
-        A spread is of another form, or its unit not known or of another dimension than machines have by that name; a
-        number is not from 0 to 1, or 0 or 1 where a normal distribution has no end.
+        A spread has another form, or its unit is unknown or of the wrong dimension for a known parameter. Or a number
+        is not from 0 to 1, or is 0 or 1 for an unbounded (normal) distribution.
 
     Examples
     --------
@@ -177,11 +177,11 @@ def sample(spreads, uniform) -> pd.DataFrame:
             f"designs: uniform must be numbers from 0 to 1, an array (designs, {len(found)}), got {checks.shown(given)}"
         ) from None
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
-    checks.require("designs", None if fits else f"{len(found)} parameters need as many columns, got {numbers.shape}")
+    checks.require("designs", None if fits else f"{len(found)} parameters need one column each, got {numbers.shape}")
     wrong = numbers[~((numbers >= 0.0) & (numbers <= 1.0))]
     checks.require(
         "designs",
-        f"the numbers must be from 0 to 1, the share of a parameter's values below each, but {wrong.size} of "
+        f"the numbers must be from 0 to 1 (cumulative probability), but {wrong.size} of "
         f"{numbers.size} are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
         if wrong.size
         else None,
@@ -199,8 +199,8 @@ def _require_table_size(count, parameters, *problems):
     whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
     checks.require(
         "designs",
-        None if whole and count > 0 else f"how many must be a whole number of at least 1, got {count!r}",
-        f"{count} designs of {parameters} parameters are too many for one table, which holds {MAX_TABLE_VALUES} "
+        None if whole and count > 0 else f"count must be a whole number of at least 1, got {count!r}",
+        f"{count} designs of {parameters} parameters are too many for one table of at most {MAX_TABLE_VALUES} "
         "values; sweep them in parts"
         if whole and count * parameters > MAX_TABLE_VALUES
         else None,

@@ -1,6 +1,6 @@
 """Design sweeps: a row of numbers for each of many designs, on one core or many machines.
 
-A sweep first checks all arguments and makes a `Job`, and tries it on one design. Then chunks of designs run through any
+A sweep first checks all arguments, makes a `Job`, and tries it on one design. Then chunks of designs run through any
 `concurrent.futures.Executor` (`workers`). With a folder the results go to a Parquet dataset (`dataset`), from which a
 stopped sweep continues.
 """
@@ -47,10 +47,10 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
         checks.count("angles", angles, size=checks.BYTES_PER_ANGLE),
         None if chunk is None else checks.count("chunk", chunk),
         None if engine is None else checks.choice("engine", engine, ("compiled", "numpy")),
-        None if len(designs) else "there are no designs",
+        None if len(designs) else "the table of designs is empty",
         *_worker_problems(executor, workers),
         *(
-            f"output {str(item)!r} takes more than {2 * item.order} crank angles, got {angles}"
+            f"output {str(item)!r} needs more than {2 * item.order} crank angles, got {angles}"
             for item in wanted
             if isinstance(item, Output) and item.order and isinstance(angles, int) and 2 * item.order >= angles
         ),
@@ -80,16 +80,16 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
 
 
 def _source_and_reference(source, designs, variant, reference):
-    """What designs vary, and the reference of ratios; an error for arguments of the wrong kind."""
+    """Source that designs vary, and reference of ratios; an error for arguments of the wrong kind."""
     if not isinstance(designs, pd.DataFrame):
         raise ParameterError(
-            f"sweep: designs must be a pandas DataFrame, as of ks.designs, got {type(designs).__name__}"
+            f"sweep: designs must be a pandas DataFrame, as from ks.designs, got {type(designs).__name__}"
         )
     if is_case(source):
         return variant_and_reference(source, variant, reference)
     if not (can_vary(source) or callable(source)):
         raise ParameterError(
-            "sweep: source must be a Case, as of ks.load_case, a Scene or a function that makes a Scene, got "
+            "sweep: source must be a Case, as from ks.load_case, a Scene or a function that returns a Scene, got "
             f"{checks.shown(source)}"
         )
     kind = "a Scene" if can_vary(source) else "a function"
@@ -101,7 +101,7 @@ def _source_and_reference(source, designs, variant, reference):
         "or give a Case",
         None
         if reference is None or _is_scene(reference)
-        else f"reference must be a Scene, as the source is {kind}, got {checks.shown(reference)}",
+        else f"reference must be a Scene, like the source, {kind}, got {checks.shown(reference)}",
     )
     return source, reference
 
@@ -140,7 +140,7 @@ def _return_fixed(item, values):
 
 
 def output_list(outputs):
-    """Outputs as a list; a single one may be given alone."""
+    """Outputs as a list; a single one may be given directly."""
     if isinstance(outputs, str | Output | SolutionNumber):
         return [outputs]
     if not isinstance(outputs, Iterable):
@@ -156,7 +156,7 @@ def _outputs(outputs, parts):
             wanted.append(parsed(text, parts))
         except ParameterError as error:
             problems.append(str(error))
-    return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["no outputs are asked for"])
+    return tuple(dict.fromkeys(wanted)), problems or ([] if wanted else ["give at least one output"])
 
 
 def _column_problems(designs, wanted):
@@ -166,23 +166,23 @@ def _column_problems(designs, wanted):
         if parse_heading(column)[0] in taken:
             yield f"column {column!r} of the designs has the name of an output; rename it"
         if hasattr(kind, "units"):  # of pint-pandas
-            yield f"column {column!r} must hold plain numbers, with the unit {kind.units} in its heading"
+            yield f"column {column!r} must contain plain numbers, with the unit {kind.units} in its heading"
         elif not pd.api.types.is_any_real_numeric_dtype(kind):
-            yield f"column {column!r} must hold numbers, but is of type {kind}"
+            yield f"column {column!r} must contain numbers, but is of type {kind}"
 
 
 def _signature_problem(function, names):
     try:
         inspect.signature(function).bind(**dict.fromkeys(names))
     except TypeError as error:
-        return f"the function does not take the columns of the designs: {error}"
+        return f"the function does not accept the columns of the designs: {error}"
     except ValueError:  # a function without a signature
         return None
     return None
 
 
 def _worker_problems(executor, workers):
-    """Problems with the executor or the number of workers; each costs 100 MB, so many more than cores are an error."""
+    """Problems with the executor or the number of workers, limited by the cores because each needs 100 MB."""
     if not isinstance(executor, Executor | None):
         found = type(executor).__name__
         yield f"executor must be an Executor of concurrent.futures (of Dask: client.get_executor()), got {found}"
@@ -237,63 +237,61 @@ def sweep(
     Parameters
     ----------
     source : Case, Scene or function
-        In a case, numbers that its file derives from others follow (`Variant.varied`); in a scene all numbers stay but
-        those that vary. A function has the parameters as keywords, arrays (designs, 1) in SI, and returns a `Scene`. A
-        function of plain numbers works too, but each design is then solved alone, in some milliseconds; the same holds
-        for variants balanced by counterweights.
+        In a case, numbers that its file derives from others follow (`Variant.varied`); in a scene all other numbers are
+        constant. A function has the parameters as keywords, arrays (designs, 1) in SI, and returns a `Scene`. A
+        function of plain numbers also works, but each design is then solved separately, in some milliseconds; the same
+        holds for variants balanced by counterweights.
     designs : pandas.DataFrame
-        A column for each parameter: of a case or scene its path with a unit, "spring.stiffness [kN/m]" (see
-        `designs.grid`, `.latin_hypercube` ...); of a function its keyword. Without a unit in SI.
+        A column for each parameter. For a case or scene its path with a unit, "spring.stiffness [kN/m]" (see
+        `designs.grid`, `.latin_hypercube` ...); for a function its keyword. SI without a unit.
     outputs : sequence of str
-        "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque", "largest
-        contact_pressure" (of a cam with a `Roller`), "swing balancing_torque" (the energy of its flywheel, J) ...; with
-        "ratio" in front the reference's number divided by the design's. All reductions: `reductions.REDUCTIONS`.
-        "main_bearing.life_hours": a number of a part in the case's [sizing], or `sizing.Part.number`; each design is
-        then solved alone.
+        "largest O", "mean_absolute balancing_torque", "range cam_force", "harmonic_2 balancing_torque" ... "largest
+        contact_pressure" needs a cam with a `Roller`; "swing balancing_torque" is the energy of its flywheel, J. A
+        leading "ratio" divides the reference's number by the design's. `reductions.REDUCTIONS` lists all reductions.
+        "main_bearing.life_hours" is a number of a part in the case's [sizing], or `sizing.Part.number`; each design is
+        then solved separately.
     variant, reference : str
-        Of a case: the variant that the designs vary (by default the first besides the reference), and the reference of
-        ratios (by default the case's). For a scene or function `reference` is a `Scene`. The reference varies in those
-        parameters that it has too, but not for a function.
+        For a case: the variant that the designs vary (by default the first besides the reference), and the reference of
+        ratios (by default the case's). For a scene or function `reference` is a `Scene`. The reference varies in shared
+        parameters, except for a function.
     angles : int
         Crank angles over the period of the loads, at least 12; a turn has at least 180, and 192 with tables or
-        friction. Extremes are refined between them. If they do not resolve an output of a design, they are doubled for
-        it, up to 5760. Where tables or friction cause kinks, the turn of each design is split, so that peaks and means
-        are exact there. Table rows within 1e-5 of the largest value of a smooth curve cause no split, unless an output
-        is not resolved otherwise.
+        friction. Extremes are refined between them. For a design with an unresolved output they are doubled, up to
+        5760. If tables or friction cause kinks, the turn of each design is split, so peaks and means are exact. Table
+        rows within 1e-5 of the largest value of a smooth curve cause no split, unless an output needs it.
     engine : "compiled" or "numpy"
-        By default compiled for a million crank angles or more, over all designs, if numba is installed and supports
+        By default "compiled" for a million crank angles or more, over all designs, if numba is installed and supports
         the mechanism.
     executor : concurrent.futures.Executor
-        Runs the chunks; by default this process does, on all its cores. For a Dask cluster:
+        Runs the chunks; by default this process runs them, on all its cores. For a Dask cluster:
         ``client.get_executor()``. An executor that breaks ends the sweep.
     workers : int
-        In place of an executor: number of own processes (by loky), which accept any function and end with this
-        process. When one dies, only its chunks run again, and only designs that kill their worker alone have no
-        numbers.
+        Instead of an executor: number of worker processes (by loky), which accept any function and end with this
+        process. If a worker dies, only its chunks run again; only designs that kill their worker have no numbers.
     chunk : int
-        Designs computed together, which bounds the memory. By default 10 000, or 50 000 if this process computes them
-        compiled and writes no folder.
+        Number of designs computed together; it limits the memory. By default 10 000, or 50 000 if this process computes
+        them compiled and writes no folder.
     folder : path
-        Parquet dataset for the finished chunks. If it contains part of the same sweep, only the rest and damaged files
-        are computed. Functions are the same if their code, their closures and the names they use from their own module
-        are (`numbers.fingerprint`).
+        Parquet dataset for the finished chunks. If it contains part of the same sweep, only the remaining chunks and
+        damaged files are computed. Functions are equal if their code, closures and used names of their own module are
+        equal (`numbers.fingerprint`).
     progress : bool
-        Show a progress bar.
+        Whether to show a progress bar.
 
     Returns
     -------
     pandas.DataFrame
-        The designs with a column for each output, in SI, and a column "failed": the reason if a design has none, else
-        empty. Last bits may differ with the chunk: if a design comes near a singular position, its whole chunk is
-        computed by special formulas. ``attrs["resolution"]`` tells the resolution of load functions without `kinks`, if
+        The designs with a column for each output, in SI, and a column "failed": the reason why a design has no numbers,
+        else empty. Last bits may differ with the chunk: if a design comes near a singular position, its whole chunk is
+        computed by special formulas. ``attrs["resolution"]`` is the resolution of load functions without `kinks`, if
         there are any.
 
     Raises
     ------
     ParameterError
-        A parameter, unit, output or reduction is not known, or the folder holds another sweep.
+        A parameter, unit, output or reduction is unknown, or the folder contains another sweep.
     QuantityError
-        The mechanism, or the reference of a ratio, has no such quantity.
+        The quantity is unknown in the mechanism, or in the reference of a ratio.
     NotGivenError
         ``engine="compiled"`` does not support the mechanism.
 
@@ -353,7 +351,7 @@ def _dry_run(job, designs, engines, pool):
 
 
 def _identity(job, designs, compared, chunk):
-    """All that the results of a sweep depend on, by name; a folder continues a sweep only if all of it is the same."""
+    """All inputs of the results of a sweep, by name; a folder continues a sweep only if all of them are equal."""
     hashed = pd.util.hash_pandas_object(designs, index=True).to_numpy()
     of_case = hasattr(compared[0], "content")
     varied = "variant" if of_case else "scene" if hasattr(compared[0], "mechanism") else "function"

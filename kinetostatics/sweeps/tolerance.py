@@ -22,17 +22,17 @@ QUANTILE_LEVELS = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 
 @dataclass(frozen=True, eq=False)
 class Tolerances:
-    """Outputs of a spread of designs; made by `tolerances`.
+    """Outputs of a spread of designs; `tolerances` returns it.
 
     Attributes
     ----------
     table : pandas.DataFrame
-        The designs with their outputs, as of `sweep`.
+        The designs with their outputs, as from `sweep`.
     outputs : tuple of str
         Columns of the outputs.
     sensitivity : pandas.DataFrame
         By output and parameter: first-order and total Sobol index, the shares of the output's variance that the
-        parameter's spread causes alone, and together with others (Saltelli 2010).
+        parameter's spread causes by itself, and together with others (Saltelli 2010).
 
     Examples
     --------
@@ -56,7 +56,7 @@ class Tolerances:
         return self.table[list(self.outputs)].quantile(list(levels)).rename_axis("quantile")
 
     def share(self, output, *, above=-np.inf, below=np.inf):
-        """Share of designs whose output lies above and below the limits."""
+        """Fraction of designs whose output is above and below the limits."""
         named = {parse_heading(column)[0]: column for column in self.outputs}
         name = str(output) if str(output) in named else str(parsed(output))
         checks.require("tolerances", checks.choice("output", name, tuple(named)))
@@ -79,13 +79,13 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         As for `sweep`: "ratio mean_absolute balancing_torque" ...
     spreads : dict of parameter to text or quantities, optional
         "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m", or pint quantities as
-        for `designs.sample`; by default those of the case file's [tolerances] that the variant has.
+        for `designs.sample`; by default those in [tolerances] of the case file that apply to the variant.
     count : int
-        Designs, a power of two; the Sobol indices need as many again for every parameter, and twice more.
+        Number of designs n, a power of two; the Sobol indices need n (parameters + 2) designs.
     seed : int
-        Of the scrambled Sobol sequences.
+        Seed of the scrambled Sobol sequences.
     folder : path
-        For a Parquet dataset of each sweep of the study, from which a stopped study continues.
+        Folder for a Parquet dataset of each sweep of the study; a stopped study continues from it.
     options
         As for `sweep`: variant, reference, angles, engine, executor, workers, chunk, progress.
 
@@ -96,8 +96,8 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     Raises
     ------
     ParameterError
-        No spreads, a text that cannot be read, a count that is no power of two, or designs within the spread that
-        cannot be computed or have an infinite output, which makes quantiles and indices meaningless.
+        Spreads are missing or unreadable, the count is not a power of two, or designs within the spread cannot be
+        computed or have an infinite output, which makes quantiles and indices meaningless.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     """
     if not (is_case(case) or can_vary(case) or callable(case)):
         raise ParameterError(
-            f"tolerances: case must be a Case, a Scene or a function that makes a Scene, got {checks.shown(case)}"
+            f"tolerances: case must be a Case, a Scene or a function that returns a Scene, got {checks.shown(case)}"
         )
     if spreads is None and is_case(case):
         known = variant_and_reference(case, options.get("variant"), options.get("reference"))[0].units
@@ -122,9 +122,9 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         "tolerances",
         None
         if spreads or not isinstance(spreads, Mapping | None)
-        else 'no spreads are given, nor has the case file any for this variant, in "tolerances"'
+        else 'give spreads: "tolerances" of the case file has none for this variant'
         if is_case(case)
-        else 'no spreads are given, such as {"slider.mass": "normal 25 kg +- 1 kg"}',
+        else 'give spreads, such as {"slider.mass": "normal 25 kg +- 1 kg"}',
         None
         if isinstance(spreads, Mapping | None)
         else f"spreads must be a dict of parameter to text or quantities, got {checks.shown(spreads)}",
@@ -145,7 +145,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         if len(wrong):
             raise ParameterError(
                 f"tolerances: {len(wrong)} of {len(table)} designs within the spread cannot be computed, for example: "
-                f"{wrong.iloc[0]}; narrow the spreads, or use sweep, which keeps them"
+                f"{wrong.iloc[0]}; use narrower spreads, or sweep, which accepts failures"
             )
         return table
 

@@ -16,11 +16,11 @@ from ..errors import KinetostaticsError
 from .chunk import result_table, run_chunk
 
 MAX_CHUNK_RUNS = 3
-"""Runs of a chunk whose worker dies, before the designs at fault are isolated."""
+"""Number of runs of a chunk whose worker dies, before the faulty designs are isolated."""
 MAX_DESIGN_RUNS = 2
-"""Runs of a single design whose worker dies, before it fails."""
+"""Number of runs of a single design whose worker dies, before it fails."""
 MAX_PENDING_CHUNKS = 256
-"""Chunks submitted to an executor at a time; own workers get two each."""
+"""Number of chunks submitted to an executor at a time; own workers get two each."""
 
 
 class Workers:
@@ -81,8 +81,8 @@ class Workers:
             raise error
         if self._count is None:
             raise KinetostaticsError(
-                f"sweep: the executor broke, as one of its workers died or could not start ({error}); give workers=n "
-                "in place of executor= for processes that are replaced when they die"
+                f"sweep: the executor broke, because a worker died or could not start ({error}); give workers=n "
+                "instead of executor= for processes that are replaced when they die"
             ) from error
         return 1
 
@@ -105,7 +105,7 @@ class Workers:
 def _is_lost_result(error):
     """Whether Dask's executor mistook a table for an error.
 
-    It does so where the worker dies after its table has arrived but before Dask reads the state of the call.
+    This happens if the worker dies after its table has arrived but before Dask reads the state of the call.
     """
     trace = error.__traceback__
     while trace and trace.tb_next:
@@ -115,7 +115,7 @@ def _is_lost_result(error):
 
 
 class _SameProcess(Executor):
-    """Runs calls at once in this process and thread."""
+    """Runs calls immediately in this process and thread."""
 
     def submit(self, function, /, *arguments, **options):
         future: Future = Future()
@@ -126,7 +126,7 @@ class _SameProcess(Executor):
 def _start_worker(parent):
     """Let a worker ignore signals, which the parent handles, and end with the parent.
 
-    A worker that ended on a signal while it sends a result would block the parent, which waits for the rest.
+    A worker that ended on a signal while sending a result would block the parent, which waits for the rest.
     """
 
     def exit_with_parent():
@@ -174,7 +174,7 @@ def run_chunks(job, rows_of, numbers, workers):
                     yield number, found
         workers.use_one_process()
         if suspects and not workers.result_unless_killed(run_chunk, job, rows_of(suspects[0])[:0]):
-            raise KinetostaticsError("sweep: the workers die before they compute anything")
+            raise KinetostaticsError("sweep: the workers die before any computation")
         for number in suspects:
             yield number, _isolate_deaths(job, rows_of(number), workers)
     finally:
@@ -182,7 +182,7 @@ def run_chunks(job, rows_of, numbers, workers):
 
 
 def _isolate_deaths(job, frame, workers):
-    """Outputs of designs that may kill their worker, by bisection down to the designs at fault.
+    """Outputs of designs that may kill their worker, by bisection down to the faulty designs.
 
     A single design runs again, as its worker may have died for another reason.
     """

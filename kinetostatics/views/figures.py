@@ -22,6 +22,7 @@ from ..numbers.files import write_problem
 from ..numbers.formatting import parse_heading
 from ..numbers.paths import places_by_path
 from . import curves, drawings, drives
+from .axis_units import scale_axes
 from .cams import draw_each_over_turn
 from .canvas import (
     ACCENT,
@@ -119,7 +120,9 @@ def _draw_pages(case, pages, folder, file_format, progress=iter):
     found = []
     for name in progress(paths):
         with rc_context(FONT):
-            found.append(save_figure(pages[name](), paths[name], case.path.stem))
+            figure = pages[name]()
+            scale_axes(figure.axes)
+            found.append(save_figure(figure, paths[name], case.path.stem))
     return found
 
 

@@ -30,8 +30,8 @@ def shares(solution, quantity, ax=None):
 
     Parameters
     ----------
-    solution : Solution
-        Of one design.
+    solution : Solution or mapping of label to Solution
+        Of one design. Several get a panel each.
     quantity : str
         As for `Solution.shares`: "O", "balancing_torque" ...
     ax : Axes, optional
@@ -107,8 +107,8 @@ def free_body(solution, link, angle, ax=None):
 
     Parameters
     ----------
-    solution : Solution
-        Of one design.
+    solution : Solution or mapping of label to Solution
+        Of one design. Several get a panel each.
     link : str
         "crank", "coupler", "slider" ...
     angle : float
@@ -123,7 +123,7 @@ def free_body(solution, link, angle, ax=None):
     Raises
     ------
     QuantityError
-        There is no such link; the message lists those there are.
+        The link is unknown; the message lists the known ones.
     AssemblyError, JammingError
         The mechanism does not close at that crank angle, or friction jams.
     ParameterError

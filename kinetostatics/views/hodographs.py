@@ -64,7 +64,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
     Raises
     ------
     QuantityError
-        A mechanism has no such vector or link; the message lists those there are.
+        A vector or link is unknown; the message lists the known ones.
 
     Examples
     --------

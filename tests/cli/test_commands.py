@@ -294,7 +294,7 @@ def test_run_prints_friction_losses_and_efficiency(capsys):
     assert re.match(r"lost at +mean \[W\] +share \[%\] +largest \[W\] +largest at \[deg\] +per turn \[J\]", text)
     assert {"O", "A", "B", "guide", "slot", "cam", "all"} < set(cells)
     assert float(cells["all"][0]) == pytest.approx(11733.0, rel=1e-5)
-    assert "of 11733 W put in, 0 W are taken and 11733 W lost: efficiency 0" in text
+    assert "of 11733 W put in, 0 W is used and 11733 W lost: efficiency 0" in text
 
 
 @pytest.mark.slow

@@ -114,7 +114,7 @@ def test_tables_of_found_designs_replace_no_file(tmp_path, capsys):
     assert main(["design", str(saw), "--out", str(found)]) == 2
     told = capsys.readouterr().err
     assert "found_cut_cam.csv" in told
-    assert "there already" in told
+    assert "exists already" in told
     assert "searching" not in told
 
 

@@ -137,7 +137,7 @@ def test_extremes_refuse_a_batch_of_designs():
 )
 def test_extremes_refuse_tables_over_the_crank_angles(name, change):
     s = Machine("plain").solve(**change)
-    with pytest.raises(ks.ParameterError, match=f"{name} is a table over the crank angles"):
+    with pytest.raises(ks.ParameterError, match=f"{name} is a table over the given crank angles"):
         ks.extremes(s, "balancing_torque")
 
 
@@ -198,7 +198,7 @@ def test_extremes_have_proven_bounds_at_their_angles():
         assert found.error_bound.shape == found.value.shape
         assert np.all(found.error_bound > 0)
         assert np.all(found.error_bound < 1e-14 * np.max(np.abs(found.value)))
-    with pytest.raises(NotGivenError, match="function of yours"):
+    with pytest.raises(NotGivenError, match="is your own function"):
         ks.extremes(s, lambda s: s.guide_force).error_bound  # noqa: B018
 
 

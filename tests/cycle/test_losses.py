@@ -189,7 +189,7 @@ GAP = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
         (
             lambda: ks.solve(YOKE, [0.0, 1.0], crank_speed=1.0, loads=ks.Torque(np.array([1.0, 2.0]), on="crank")),
             ks.ParameterError,
-            "table over the crank angles given",
+            "table over the given crank angles",
         ),
     ],
     ids=["standing", "batch", "jams", "gap", "table"],

@@ -129,5 +129,5 @@ def test_swing_is_an_energy_of_torques():
     assert parsed("swing balancing_torque").of(scene).column == "swing balancing_torque [J]"
     assert parsed("ratio swing balancing_torque").of(scene).column == "ratio swing balancing_torque [1]"
     for name in ("O", "slider_position"):
-        with pytest.raises(ks.ParameterError, match=r"swing is the energy that a torque gives .* is in (N|m)$"):
+        with pytest.raises(ks.ParameterError, match=r"swing is the energy that a torque exchanges.* is in (N|m)$"):
             parsed(f"swing {name}").of(scene)

@@ -115,7 +115,7 @@ MIDWAY = scene(pulse(100.525, 0.02))
 
 
 def test_resolution_is_stated_wherever_such_a_function_acts():
-    sentence = "every 0.05 deg of the crank: what is narrower may be missed"
+    sentence = "every 0.05 deg of the crank; narrower features may be missed"
     solution = NARROW.solve(1)
     found = ks.extremes(solution, "balancing_torque")
     assert found.range[1] == pytest.approx(523.8, abs=0.1)  # the pulse is missed

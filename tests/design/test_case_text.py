@@ -102,7 +102,7 @@ def test_tables_are_written_to_files_beside_it(tmp_path):
         one, other = scene.solve(360), read.variant(name).scene.solve(360)
         assert one.period == other.period
         np.testing.assert_allclose(other.balancing_torque, one.balancing_torque, rtol=1e-13, atol=1e-13)
-    with pytest.raises(ks.errors.FileError, match="there already"):
+    with pytest.raises(ks.errors.FileError, match="exists already"):
         case_text.write_case(tmp_path / "made.toml", "Made", scenes)
 
 

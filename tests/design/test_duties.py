@@ -194,7 +194,7 @@ OTHER = ks.Scene(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)), 10.0)
 @every(
     ("duties", "given", "message"),
     [
-        ({}, {}, "there are no duties"),
+        ({}, {}, "give at least one duty"),
         ({"idle": (IDLE, 0.5), "cut": (CUT, 0.6)}, {}, r"shares must sum to 1, got 1\.1: idle 0\.5, cut 0\.6"),
         (
             {"idle": (IDLE, -0.5), "cut": (CUT, 0.0)},
@@ -231,7 +231,7 @@ def test_wrong_duties_are_refused_with_all_problems(duties, given, message):
 
 @pytest.mark.slow
 def test_a_limit_that_cannot_hold_names_its_duty():
-    with pytest.raises(ks.DesignError, match="nearest misses cut: largest O <= 20000 N, where it comes to 1"):
+    with pytest.raises(ks.DesignError, match="nearest misses cut: largest O <= 20000 N, where it is 1"):
         ks.design.optimise(DUTIES, VARY, RMS, ["cut: largest O <= 20 kN"], angles=24)
     with pytest.raises(ks.ParameterError, match="duty is 'saw', allowed: 'idle', 'cut'"):
         found().duty("saw")

@@ -161,5 +161,5 @@ def test_trim_refuses_outputs_with_kinks():
     pulse = ks.Table(np.radians([0.0, 99.9, 100.0, 100.5, 100.6, 360.0]), [0.0, 0.0, -1e5, -1e5, 0.0, 0.0])
     scene = ks.Scene(ks.crank_slider(0.3, 1.1, slider=ks.Link(10.0)), 30.0, loads=ks.ProcessForce(pulse))
     spread = ks.design.Spread(0.5, {"slider.mass": "normal 0 % +- 1 %"}, trim=0.02)
-    with pytest.raises(ks.ParameterError, match="trim takes outputs without kinks, but loads, friction or a cam"):
+    with pytest.raises(ks.ParameterError, match="trim needs outputs without kinks, but loads, friction or a cam"):
         ks.design.over_spread(scene, "largest_absolute balancing_torque", spread, samples=16)

@@ -23,7 +23,7 @@ def test_starts_agree_and_the_seed_repeats_them():
 
 
 def test_demands_end_with_how_near_the_best_comes():
-    with pytest.raises(ks.DesignError, match=r"nearest misses ratio .* >= 100, where it comes to 52\.8") as error:
+    with pytest.raises(ks.DesignError, match=r"nearest misses ratio .* >= 100, where it is 52\.8") as error:
         ks.design.optimise(SAW, SPRING, TORQUE, limits=f"{RATIO} >= 100", variant="cam-circle", angles=180)
     assert set(error.value.values) == {"spring.stiffness"}
 

@@ -183,7 +183,7 @@ def test_ways_to_carry_weight_show_their_prices():
     ks.crank_slider(0.1, 0.4, assembly=-1),
 ])  # fmt: skip
 def test_other_machines_are_refused_in_words(machine):
-    with pytest.raises(ks.ParameterError, match="takes a crank-slider, plain or with a cam, whose slider"):
+    with pytest.raises(ks.ParameterError, match="needs a crank-slider, plain or with a cam, whose slider"):
         ks.design.weight_options(ks.Scene(machine, 1.0), 2)
 
 

@@ -81,7 +81,7 @@ def test_the_first_page_counts_its_lines():
 def test_certainty_page_says_what_its_code_finds(capsys):
     names: dict = {}
     codes = [code for code in code_cells(text_of(PAGES["this_number"])) if "subprocess" not in code]
-    with pytest.warns(UserWarning, match="236.5 deg the first makes 0.89 N m, the second 1.2e"):
+    with pytest.warns(UserWarning, match="236.5 deg first order 0.89 N m, second order 1.2e"):
         exec(compile("\n".join(codes), "this_number", "exec"), names)
     printed = capsys.readouterr().out
     s, peak = names["s"], names["peak"]

@@ -74,8 +74,8 @@ def test_what_no_motor_can_have_is_refused(changes, words):
     ("speed", "torque", "words"),
     [
         ([0.0, 2.0, 1.0], [1.0, 1.0, 1.0], "speeds must rise, but 1 follows 2"),
-        ([0.0, 1.0], [1.0], "one length"),
-        ([0.0], [1.0], "one length, 2 at least"),
+        ([0.0, 1.0], [1.0], "the same length"),
+        ([0.0], [1.0], "the same length, at least 2"),
         ([0.0, math.nan], [1.0, 2.0], "speed must be finite"),
         ("abc", [1.0, 2.0], "speed must be"),
         (3.0, [1.0, 2.0], "speed must be a row"),
@@ -93,7 +93,7 @@ def test_rows_that_are_no_table_are_refused(speed, torque, words):
 def test_weak_motor_and_runaway_are_reported():
     with pytest.raises(ks.errors.DriveError, match="too weak"):
         operating_speed(driven(DISC, ks.Torque(-1e4, on="crank")))
-    with pytest.raises(ks.errors.DriveError, match="nothing holds the speed"):
+    with pytest.raises(ks.errors.DriveError, match="nothing stabilises the speed"):
         operating_speed(driven(motor=ks.drive.Motor.constant(5.0)))
 
 

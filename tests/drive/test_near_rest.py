@@ -114,7 +114,7 @@ def test_functions_that_repeat_later_are_refused(run):
         "steady": lambda: ks.drive.steady(scene, ks.drive.Motor.linear(30.0, 50.0), INERTIA),
         "flywheel": lambda: ks.drive.flywheel(scene, 0.02),
     }
-    with pytest.raises(ks.ParameterError, match=r"repeats after 2 turns only: give period=4\*pi"):
+    with pytest.raises(ks.ParameterError, match=r"repeats only after 2 turns: give period=4\*pi"):
         runs[run]()
 
 

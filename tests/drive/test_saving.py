@@ -99,7 +99,7 @@ def test_parts_are_printed_with_their_units():
     assert told[0].startswith("<EnergyFlow: energy in a turn of 0.1")
     assert told[0].endswith(" s")
     assert len(told) == 1 + len(flow.parts)
-    assert all(line.rstrip(">").endswith((" J", " J held and returned")) for line in told[1:])
+    assert all(line.rstrip(">").endswith((" J", " J stored and returned")) for line in told[1:])
 
 
 # What balancing saves a drive, by `compare` on machines in periodic running

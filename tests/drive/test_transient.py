@@ -238,7 +238,7 @@ RUBS = {"O": ks.PinFriction(0.1, 0.03), "guide": ks.GuideFriction(0.1)}
 @pytest.mark.parametrize(
     ("scene", "speed", "motor", "words"),
     [
-        (ks.Scene(PUMP, 1.0), 3.0, None, "give back all that they take"),
+        (ks.Scene(PUMP, 1.0), 3.0, None, "return all of it"),
         (ks.Scene(PUMP, 1.0, loads=ks.Torque(2.0, on="crank"), friction=RUBS), 9.0, None, "times the kinetic energy"),
         (ks.Scene(PUMP, 1.0), -30.0, ks.drive.Motor.linear(100.0, 50.0, transmission=-2.0), "its motor keeps it"),
         (ks.Scene(PUMP, 1.0, friction=RUBS), 60.0, DISC_MOTOR, "its motor keeps it running"),

@@ -101,6 +101,15 @@ def test_the_stroke_of_a_cut_is_told_at_its_dead_centres():
     assert "crank angle of the far dead centre" in " ".join(str(told).split())
 
 
+def test_a_table_from_a_dead_centre_is_read_at_the_angle_from_it():
+    gas = ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [-9e3, -1e3, 0.0], zero="TDC"))
+    machine = ks.crank_slider(0.05, 0.2, guide_angle=1.3)
+    told = ks.solve(machine, 0.0, crank_speed=1.0, loads=gas).explain("balancing_torque", 2.0)
+    text = " ".join(str(told).split())
+    assert "crank angle of the dead centre at which the table begins" in text
+    assert "(phi - phi_0_process_force - start_process_force)" in text
+
+
 def test_absent_terms_are_zero_without_a_step():
     told = PUMP.explain("crank_angular_acceleration", ANGLE)
     assert told.value == 0.0
@@ -245,7 +254,7 @@ def test_followers(kind):
 @every("kind", RUBBING)
 def test_friction_is_told_by_the_law_that_it_satisfies(kind):
     told = ask(Drawn(kind, 1).scene.solve(0.3), "balancing_torque", 0.3)
-    assert any("found together with the reactions" in step.words for step in told.steps)
+    assert any("solved together with the reactions" in step.words for step in told.steps)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
@@ -322,7 +331,9 @@ def test_array_load_is_read_at_its_own_angle():
     solution = ks.solve(LOADED.mechanism, ANGLES, crank_speed=SPEED, loads=ks.ProcessForce(1e3 * np.sin(ANGLES)))
     told = ask(solution, "balancing_torque", float(ANGLES[40]))
     assert told.value == pytest.approx(solution.balancing_torque[40], rel=VALUE)
-    with pytest.raises(ks.ParameterError, match="ProcessForce is a table over the crank angles given, unknown between"):
+    with pytest.raises(
+        ks.ParameterError, match="ProcessForce is a table over the given crank angles, without values between"
+    ):
         solution.explain("balancing_torque", 0.7)
 
 
@@ -339,11 +350,9 @@ def test_one_of_several_designs():
     solution = ks.solve(mechanism, [0.1, 0.2], crank_speed=50.0, loads=ks.ProcessForce(1e3 * sizes))
     told = ask(solution, "balancing_torque", 0.7, design=1)
     assert next(step.value for step in told.steps if step.words == "crank_length") == 0.06
-    with pytest.raises(
-        ks.ParameterError, match=r"one design is told at a time, of shape \(2,\); say which, as design=0"
-    ):
+    with pytest.raises(ks.ParameterError, match=r"choose one of the designs of shape \(2,\), as design=0"):
         solution.explain("balancing_torque", 0.7)
-    with pytest.raises(ks.ParameterError, match=r"there is no design 2 among those of shape \(2,\)"):
+    with pytest.raises(ks.ParameterError, match=r"design 2 is not among the designs of shape \(2,\)"):
         solution.explain("balancing_torque", 0.7, design=2)
 
 
@@ -354,7 +363,7 @@ def test_one_of_several_designs():
         ((None, 0.7), "quantity is None"),
         ((["O"], 0.7), "quantity is"),
         (("friction_residual", 0.7), "quantity is 'friction_residual'"),
-        (("O", [0.1, 0.2]), "one crank angle is told at a time, got 2"),
+        (("O", [0.1, 0.2]), "give one crank angle, got 2"),
         (("O", math.nan), "finite"),
         (("O", "0.7"), "crank_angle"),
     ],

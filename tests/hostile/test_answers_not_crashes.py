@@ -152,7 +152,9 @@ def test_robust_design_stays_within_the_table():
 @pytest.mark.slow
 def test_spread_that_leaves_the_table_is_named():
     spread = ks.design.Spread(0.05, {"crank_length": "normal 0 % +- 3 %"}, samples=64)
-    with pytest.raises(ks.DesignError, match=r"within the spread of crank_length fails: table over travel"):
+    with pytest.raises(
+        ks.DesignError, match=r"whose spread of crank_length contains a machine that fails: table over travel"
+    ):
         ks.design.optimise(machine(0.0475), {"slider.mass": (0.5, 2.0)}, minimise="largest A", robust=spread)
 
 
@@ -233,7 +235,7 @@ NO_PLACES = [
     ),
     (
         placed(lambda placement: placement.joints.update(B=placement.joints["Q"])),
-        r"hangs on 'A', but its place asks for 'Q'",
+        r"is attached to 'A', but its place asks for 'Q'",
     ),
     (own(resolve=lambda self, placement, loads, along: None), r"its resolve must return a Resolved"),
 ]

@@ -155,9 +155,9 @@ def test_what_must_be_greater_than_zero_is(field, value):
         (lambda: ks.design.contact(SOLUTION, 0.05, 0.06, 210e9, 0.3, roller_inertia=-1.0), "roller_inertia must be"),
         (lambda: ks.design.contact(SOLUTION, 0.05, 0.06, 210e9, 0.3).life, "takes its load_rating"),
         (lambda: ks.design.lift_off_speed(None), "solution must be a Solution"),
-        (lambda: ks.design.lift_off_speed(PLAIN), "takes a mechanism with a CamRoller"),
+        (lambda: ks.design.lift_off_speed(PLAIN), "needs a mechanism with a CamRoller"),
         (lambda: ks.design.starting_torque("saw"), "solution must be a Solution"),
-        (lambda: ks.design.spring_surge(SOLUTION, 1.0), "takes a solution with one Spring"),
+        (lambda: ks.design.spring_surge(SOLUTION, 1.0), "needs a solution with one Spring"),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_sentence(make, message):
@@ -337,7 +337,7 @@ def machines(drive):
             ks.Scene(mechanism, 10.0, loads=ks.Torque(lambda m: np.sin(1e7 * m.crank_angle), on="rocker")),
             "not smooth between finitely many kinks",
         ),
-        "taken": (ks.design.torque_balancing_cam(drive, mass=0.3, travel=0.012).scene, "even as it is|a second time"),
+        "taken": (ks.design.torque_balancing_cam(drive, mass=0.3, travel=0.012).scene, "already even|a second time"),
     }
 
 

@@ -183,7 +183,7 @@ def test_function_of_angle_runs_without_a_motor(speed):
 def test_function_of_position_never_stands_still():
     """It gives back in a turn what it takes, which only a load that cannot depend on the speed surely does."""
     scene = ks.Scene(PRESS, 1.0, loads=ks.ProcessForce(lambda motion: np.round(0.0 * motion.slider_position) - 10.0))
-    with pytest.raises(ks.DriveError, match="give back all that they take in a turn"):
+    with pytest.raises(ks.DriveError, match="return all of it in a turn"):
         ks.drive.coast(scene, 1.0, from_angle=0.3, from_speed=20.0, until="standstill")
 
 

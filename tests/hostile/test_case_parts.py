@@ -123,7 +123,7 @@ WRONG = {
     ),
     "joint that is not there": (
         GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"\npin = "D"\non = "Q"',
-        "variants.a: chain: SliderGroup hangs on joint 'Q', which no part before it places",
+        "variants.a: chain: SliderGroup is attached to joint 'Q', which no part before it places",
     ),
     "joint twice": (
         GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"',
@@ -441,7 +441,10 @@ WRONG_DRIVES = {
     "constant of nothing": ('motor = { kind = "constant", torque = "0 N m" }', "is no motor: torque must not be 0"),
     "rows no list": (table('"0 rpm"', '["1 N m"]'), f"{MOTOR}.speed must be a list such as"),
     "rows empty": (table("[]", "[]"), f"{MOTOR}.speed must be a list such as"),
-    "rows of two lengths": (table('["0 rpm", "9 rpm"]', '["1 N m"]'), "must be of one length, 2 at least, got 2 and 1"),
+    "rows of two lengths": (
+        table('["0 rpm", "9 rpm"]', '["1 N m"]'),
+        "must have the same length, at least 2, got 2 and 1",
+    ),
     "rows that fall": (table('["9 rpm", "0 rpm"]', '["1 N m", "0 N m"]'), "is no motor: speeds must rise"),
     "row without unit": (table('["0 rpm", 9]', '["1 N m", "0 N m"]'), f"{MOTOR}.speed must be text of a number"),
 }

@@ -127,7 +127,9 @@ def test_a_damaged_part_is_made_anew(folder, expected, name):
     if name.startswith("flipped") and not caught:  # of what no reader looks at
         return
     assert [item.category for item in caught] == [CacheWarning]
-    message = f"{folder} these are no parts of it as it wrote them, and are made anew or left out: part-000001.parquet"
+    message = (
+        f"{folder} these files are not parts of this sweep and are computed again or left out: part-000001.parquet"
+    )
     assert message in str(caught[0].message)
     assert caught[0].filename == __file__
     with warnings.catch_warnings():
@@ -138,7 +140,7 @@ def test_a_damaged_part_is_made_anew(folder, expected, name):
 def test_a_part_of_another_sweep_is_made_anew(finished, folder, expected, tmp_path):
     sweep(tmp_path / "other", DESIGNS * 1.1)
     shutil.copy(part(tmp_path / "other"), part(folder))
-    with pytest.warns(CacheWarning, match=r"part-000001.parquet \(another sweep than was written\)"):
+    with pytest.warns(CacheWarning, match=r"part-000001.parquet \(the sweep differs from the written one\)"):
         pd.testing.assert_frame_equal(sweep(folder), expected, check_exact=True)
 
 
@@ -150,7 +152,7 @@ def test_one_warning_names_some_of_many(folder, expected):
     with pytest.warns(CacheWarning) as caught:
         pd.testing.assert_frame_equal(sweep(folder), expected, check_exact=True)
     assert len(caught) == 1
-    assert "part-000007.parquet (the sweep has no such chunk)" in str(caught[0].message)
+    assert "part-000007.parquet (the sweep does not have this chunk)" in str(caught[0].message)
     assert str(caught[0].message).endswith("and 1 more")
 
 
@@ -190,14 +192,14 @@ def test_a_manifest_that_tells_nothing_is_refused(folder, name):
 @pytest.mark.parametrize("value", ["{}", '{"version": [1]}', '{"version": null, "function": {}, "angles": "12"}'])
 def test_a_manifest_of_other_values_is_another_sweep(folder, value):
     (folder / MANIFEST).write_text(value)
-    with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in version"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep, which differs in version"):
         sweep(folder)
 
 
 def test_another_library_version_is_another_sweep(folder):
     record = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps(record | {"version": "0.0.1"}))
-    with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in version;"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep, which differs in version;"):
         sweep(folder)
 
 
@@ -253,7 +255,7 @@ PLACES = {
     "a part is a folder": (part_folder, "part-000001.parquet is no file; remove it"),
     "a part is a pipe": (part_pipe, "part-000001.parquet is no file; remove it"),
     "a part is a link to nowhere": (part_link, "part-000001.parquet is no file; remove it"),
-    "files of something else": (foreign, f"holds part-000001.parquet, but no {MANIFEST}"),
+    "files of something else": (foreign, f"contains part-000001.parquet, but no {MANIFEST}"),
     "a file": (a_file, "cannot be used: .*exists"),
     "below a file": (below_a_file, "cannot be used: "),
 }
@@ -316,7 +318,7 @@ def together(monkeypatch, other):
 
 def test_second_of_two_simultaneous_sweeps_is_refused(tmp_path, monkeypatch, expected):
     together(monkeypatch, lambda: sweep(tmp_path))
-    with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in designs"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep, which differs in designs"):
         sweep(tmp_path, DESIGNS * 1.1)
     pd.testing.assert_frame_equal(sweep(tmp_path), expected, check_exact=True)
 
@@ -334,7 +336,7 @@ def test_manifest_is_exclusive_without_hard_links(tmp_path, monkeypatch, expecte
     monkeypatch.setattr(Path, "hardlink_to", refused)
     pd.testing.assert_frame_equal(sweep(tmp_path), expected, check_exact=True)
     together(monkeypatch, lambda: sweep(tmp_path / "new"))
-    with pytest.raises(ks.ParameterError, match="holds another sweep"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep"):
         sweep(tmp_path / "new", DESIGNS * 1.1)
 
 

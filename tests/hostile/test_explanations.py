@@ -28,7 +28,7 @@ def test_no_angle(angle):
 
 @every("design", [0, -1, (0,), "first", 1.5, (0, 0)])
 def test_no_designs_to_choose_of(design):
-    with pytest.raises(ks.ParameterError, match="there is no design"):
+    with pytest.raises(ks.ParameterError, match="is not among the designs"):
         SOLVED.explain("O", 0.7, design)
 
 

@@ -294,7 +294,7 @@ REPEATING = {
 def test_load_of_several_turns_names_its_period(turns):
     solution = at_rest(SAW, [ks.ProcessForce(REPEATING[turns])], 33.5)
     for way in (lambda: ks.extremes(solution, "O"), lambda: mean_absolute_torque(solution)):
-        with pytest.raises(ks.ParameterError, match=rf"repeats after {turns} turns only: give period={2 * turns}\*pi"):
+        with pytest.raises(ks.ParameterError, match=rf"repeats only after {turns} turns: give period={2 * turns}\*pi"):
             way()
     with pytest.raises(ks.ParameterError, match=rf"give period={2 * turns}\*pi"):
         swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, solution.loads), {"mass": [1.0]}, ["rms O"])
@@ -343,7 +343,7 @@ def test_mean_torque_sees_narrow_pulses(half_width):
 def test_unconverged_mean_says_its_accuracy():
     wild = ks.ProcessForce(lambda motion: 1e4 * np.sin(1e7 * np.sin(motion.crank_angle)))
     _, said = silently(mean_absolute_torque, at_rest(SAW, [wild]))
-    assert "mean torque: it is right to about" in said
+    assert "mean torque: it is accurate only to" in said
 
 
 def test_a_noisy_table_is_compared_in_bounded_time():
@@ -388,7 +388,7 @@ def test_sweeps_of_too_few_angles_are_refused(angles):
 def test_a_peak_too_narrow_gives_no_number():
     made = lambda short: ks.Scene(ks.crank_slider(1.0, 1.0 + short, slider=ks.Link(1.0)), 30.0, 0.0, ())  # noqa: E731
     table = swept(made, {"short": [1e-9, 0.2]}, ["largest O"])
-    assert "passes so near a limit position" in table["failed"][0] or "no correct digit" in table["failed"][0]
+    assert "passes close to a limit position" in table["failed"][0] or "no correct digit" in table["failed"][0]
     assert np.isnan(table.iloc[0, 1])
     assert table["failed"][1] == ""
 

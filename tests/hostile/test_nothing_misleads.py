@@ -152,12 +152,12 @@ HINTS = {
     "solution at degrees": (lambda: SCENE.solve(36).at(DEGREES), "from 0 to 350 by 10 look like degrees"),
     "solution at a list": (lambda: SCENE.solve(36).at([0, 90, 180, 270]), "from 0 to 270 by 90 look like degrees"),
     "solution at 90.0": (lambda: SCENE.solve(36).at(90.0), "the crank angle 90 looks like degrees"),
-    "solution at a count": (lambda: SCENE.solve(36).at(360), "360 is taken as one crank angle"),
+    "solution at a count": (lambda: SCENE.solve(36).at(360), "360 is used as one crank angle"),
     "running at degrees": (lambda: running().at(DEGREES), "from 0 to 350 by 10 look like degrees"),
-    "running at a count": (lambda: running().at(360), "360 is taken as one crank angle"),
+    "running at a count": (lambda: running().at(360), "360 is used as one crank angle"),
     "program at degrees": (lambda: program()(DEGREES), "from 0 to 350 by 10 look like degrees"),
     "program at 90.0": (lambda: program()(90.0), "the crank angle 90 looks like degrees"),
-    "program at a count": (lambda: program()(360), "360 is taken as one crank angle"),
+    "program at a count": (lambda: program()(360), "360 is used as one crank angle"),
     "derivatives at degrees": (lambda: program().derivatives(DEGREES), "look like degrees"),
     "bounds at degrees": (lambda: program().error_bound(DEGREES), "look like degrees"),
     "explained at 39": (lambda: SCENE.solve(36).explain("O", 39), "39 looks like degrees.*39 rad.*np.radians"),
@@ -235,13 +235,15 @@ def test_machines_with_gaps_have_no_quantile(name):
 def test_spreads_that_reach_gaps_are_refused():
     spread = ks.design.Spread(0.9, {"coupler_length": "normal 0 % +- 5 %"})
     scene = ks.Scene(ks.crank_slider(0.3, 0.31, coupler=ROD, slider=BODY), 5.0)
-    with pytest.raises(ks.ParameterError, match=r"over_spread: \d+ of 64 machines .* do not close .*; narrow the spr"):
+    with pytest.raises(
+        ks.ParameterError, match=r"over_spread: \d+ of 64 machines .* do not close .*; use narrower spr"
+    ):
         ks.design.over_spread(scene, "mean_absolute balancing_torque", spread, samples=64)
 
 
 @pytest.mark.parametrize("ratio", [-5, -0.1, 1.1, 5.0])
 def test_ratio_beyond_both_ends_is_refused(ratio):
-    with pytest.raises(ks.ParameterError, match=f"ratio must be from 0 .* to 1 .*, got {ratio:g}: beyond an end"):
+    with pytest.raises(ks.ParameterError, match=f"ratio must be from 0 .* to 1 .*, got {ratio:g}: beyond them"):
         ks.balancing.partial(MACHINE, ratio, crank=ks.Counterweight(arm=-0.05))
 
 
@@ -312,7 +314,7 @@ SPREADS = {"slider.mass": "500..700 kg", "spring.stiffness": "normal 712 kN/m +-
 @every(
     ("uniform", "words"),
     [
-        ([[2.0, 0.5]], "must be from 0 to 1, .* but 1 of 2 are not, 2 for instance"),
+        ([[2.0, 0.5]], "must be from 0 to 1 .* but 1 of 2 are not, 2 for instance"),
         ([[0.5, -0.1], [0.5, 0.5]], "but 1 of 4 are not, -0.1 for instance"),
         ([[np.nan, 0.5]], "but 1 of 2 are not, nan for instance"),
         (lambda size: np.full((3, size), 600.0), "but 6 of 6 are not, 600 for instance"),
@@ -341,12 +343,12 @@ ASKED = {
     "reference, function": (
         lambda: (made_of, {"mass": "5..7 kg:3"}),
         {"reference": "cam"},
-        "reference must be a Scene, as the source is a function, got 'cam'",
+        "reference must be a Scene, like the source, a function, got 'cam'",
     ),
     "reference, scene": (
         lambda: (made_of(600.0), DESIGNS),
         {"reference": "cam"},
-        "as the source is a Scene, got 'cam'",
+        "like the source, a Scene, got 'cam'",
     ),
     "no folder": (
         lambda: (made_of(600.0), DESIGNS),
@@ -397,7 +399,7 @@ def test_angle_of_a_turning_rocker_is_continuous(mechanism, turns):
 )
 def test_what_grows_each_turn_has_no_extremes(mechanism, function, growth):
     s = ks.solve(mechanism, 0.5, crank_speed=3.0)
-    with pytest.raises(ks.ParameterError, match=f"grows by {growth}, as the angle of a link that turns fully"):
+    with pytest.raises(ks.ParameterError, match=f"grows by {growth}, as the angle of a link that makes full turns"):
         ks.extremes(s, function)
 
 

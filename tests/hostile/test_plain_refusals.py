@@ -166,7 +166,7 @@ def test_torque_cam_keeps_clear_of_the_shaft():
     assert "smallest distance from O 210 mm" in clear.report()
     assert "cuts into" not in clear.report()
     near = ks.design.torque_balancing_cam(drive, base_radius=0.1, **given)
-    assert "the cam cuts into the shaft: the roller centre comes to 100 mm from O" in near.report()
+    assert "the cam cuts into the shaft: the roller centre is at 100 mm from O" in near.report()
 
 
 # Files and names

@@ -266,5 +266,5 @@ def test_no_name_is_lost_in_silence(seed):
 def test_group_on_a_link_is_advised_to_use_a_pin(kind):
     made = group(kind, random.Random(1).choice)
     on = ("crank", "A") if kind == "dyad" else "crank"
-    with pytest.raises(ks.ParameterError, match="hangs on 'crank', which is a link; put a Pin on that link"):
+    with pytest.raises(ks.ParameterError, match="is attached to 'crank', which is a link; put a Pin on that link"):
         ks.Mechanism("chain", ks.Crank(0.1), (dataclasses.replace(made, on=on),))

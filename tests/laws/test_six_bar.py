@@ -41,7 +41,7 @@ def test_load_on_an_absent_slider_names_the_present():
 @pytest.mark.parametrize(
     ("names", "words"),
     [
-        ({"on": "Q", "pin": "C", "label": "2"}, "hangs on joint 'Q'"),
+        ({"on": "Q", "pin": "C", "label": "2"}, "is attached to joint 'Q'"),
         ({"on": "B", "pin": "C"}, "'coupler' a second time"),
     ],
 )

@@ -476,5 +476,5 @@ def test_other_pins_have_no_change_points(at):
         groups = (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.Pin("coupler", at), hung("deltoid", "open", "C"))
     else:
         groups = (ks.Pin("crank", at), hung("deltoid", "open", "C"))
-    with pytest.raises(ks.ParameterError, match="but it hangs on 'C'; give"):
+    with pytest.raises(ks.ParameterError, match="but it is attached to 'C'; give"):
         ks.Mechanism("chain", ks.Crank(0.1), groups)

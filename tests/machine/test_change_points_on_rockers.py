@@ -315,7 +315,7 @@ def test_case_file(tmp_path):
     assert s.mechanism.groups[1].passage == "parallel 0 1 0 rocker"
     assert np.array_equal(s.rate("rocker2"), s.rate("rocker"))
     path.write_text(CASE.replace('on = "B"', 'on = "O2"'))
-    with pytest.raises(ks.CaseError, match="or of a rocker, but it hangs on 'O2'; give"):
+    with pytest.raises(ks.CaseError, match="or of a rocker, but it is attached to 'O2'; give"):
         ks.load_case(path)
 
 
@@ -332,9 +332,12 @@ def _made(inner, **outer):
 WRONG = {
     "a joint that is not there": (
         lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0)), on="X"),
-        "or of a rocker, but it hangs on 'X'",
+        "or of a rocker, but it is attached to 'X'",
     ),
-    "a fixed joint": (lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0)), on="O2"), "or of a rocker, but it hangs on 'O2'"),
+    "a fixed joint": (
+        lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0)), on="O2"),
+        "or of a rocker, but it is attached to 'O2'",
+    ),
     "a rocker that stands": (
         lambda: _made((1.0, 1.0, 1.0, (1.0, 0.0), "crossed"), pivot=(2.5, 0.0)),
         "the rocker stands still",
@@ -356,7 +359,7 @@ WRONG = {
             ks.Crank(1.0),
             (ks.RockerGroup(1.5, 1.0, (1.5, 0.0)), ks.SliderGroup(1.0, assembly="open", on="B", pin="C", label="2")),
         ),
-        "for a group on a pin of the crank at a constant radius, but it hangs on 'B'",
+        "for a group on a pin of the crank at a constant radius, but it is attached to 'B'",
     ),
     "designs of several kinds": (
         lambda: _made((1.0, 1.5, 1.0, (1.5, 0.0), "open"), coupler_length=np.array([[1.5], [1.6]])),

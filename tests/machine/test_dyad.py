@@ -126,7 +126,7 @@ def test_what_no_dyad_can_have_is_refused(fields, words):
 
 
 def test_a_joint_that_no_part_places_is_named():
-    with pytest.raises(ParameterError, match="Dyad hangs on joint 'X', which no part before it places"):
+    with pytest.raises(ParameterError, match="Dyad is attached to joint 'X', which no part before it places"):
         ks.Mechanism("chain", ks.Crank(0.1), (ks.Dyad(0.4, 0.3, ("A", "X")),))
 
 

@@ -130,7 +130,7 @@ def test_changing_a_guide_by_points_gives_advice(ask):
         ask(two_guides())
     told = str(raised.value)
     assert "parameter guide_angle2 has no number here, as the guide runs through two points" in told
-    assert told.endswith("to change its angle; beside it stand guide_offset2, exact2.x, exact2.y")
+    assert told.endswith("to change its angle; its neighbours are guide_offset2, exact2.x, exact2.y")
     angle, offset = map(float, re.search(r"make it by Guide.at\((.*), (.*)\)", told).groups())
     same = ks.Guide.at(angle, offset)
     guide = two_guides().mechanism.guides["slider2"]
@@ -139,7 +139,9 @@ def test_changing_a_guide_by_points_gives_advice(ask):
 
 def test_what_has_no_number_is_told_beside_what_has():
     scene = ks.Scene(ks.crank_slider(0.1, 0.4), 10.0, friction={"guide": ks.GuideFriction(0.1)})
-    with pytest.raises(ks.ParameterError, match=r"half_length has no number here; beside it stand friction\.guide\.mu"):
+    with pytest.raises(
+        ks.ParameterError, match=r"half_length has no number here; its neighbours are friction\.guide\.mu"
+    ):
         scene.varied({"friction.guide.half_length": 0.1})
 
 

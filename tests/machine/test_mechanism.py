@@ -145,7 +145,7 @@ def solve(made=None, angle=AROUND, **changes):
     ],
 )
 def test_angles_in_degrees_are_hinted_at(angles):
-    with pytest.warns(ks.HintWarning, match="look like degrees; they are taken as radians") as caught:
+    with pytest.warns(ks.HintWarning, match="look like degrees; they are used as radians") as caught:
         solve(angle=angles)
     assert [item.filename for item in caught] == [__file__]
 

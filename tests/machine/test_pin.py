@@ -126,7 +126,7 @@ BARS = ks.RockerGroup(0.4, 0.3, (0.3, 0.1))
     ("first", "second", "words"),
     [
         (BARS, ks.Pin("couplr", (0.1, 0.0)), "link that carries joint 'C' is 'couplr', allowed: .*'crank', 'coupler'"),
-        (ks.Pin("coupler", (0.1, 0.0)), BARS, "the part that adds a link stands before what is fixed to it"),
+        (ks.Pin("coupler", (0.1, 0.0)), BARS, "a part that adds a link must come before the parts fixed to it"),
         (ks.Pin("crank", (0.1, 0.0)), ks.Pin("crank", (0.0, 0.1)), "Pin adds joint 'C' a second time"),
         (ks.SliderGroup(0.4), ks.CylinderGroup((0.3, 0.3)), "adds reaction 'A' a second time"),
         (BARS, ks.SliderGroup(0.9, on="B", pin="B2", label="2"), "adds reaction 'B2' a second time"),

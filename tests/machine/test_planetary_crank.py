@@ -185,7 +185,7 @@ def test_what_no_planet_can_have_is_refused(options, words):
 
 def test_a_planet_hangs_on_the_crank():
     bars = ks.RockerGroup(0.4, 0.3, (0.35, 0.1))
-    with pytest.raises(ks.ParameterError, match="it hangs on 'B', but a planet needs a pin of the crank"):
+    with pytest.raises(ks.ParameterError, match="it is attached to 'B', but a planet needs a pin of the crank"):
         ks.Mechanism("two", ks.Crank(0.1), (bars, ks.PlanetaryCrank(0.1, on="B")))
     with pytest.raises(ks.ParameterError, match="a planet needs a pin of the crank"):
         ks.check(ks.PlanetaryCrank(0.1))

@@ -271,7 +271,7 @@ def test_a_pin_that_never_turns():
     """Two bars on pins of one link turn with it: as a plain bearing it has pressure, but no pv."""
     parts = ks.Pin(on="crank", at=(0.02, 0.1), name="C"), ks.Dyad(0.3, 0.4, on=("A", "C"), dyad1=ks.Link(1.0, 0.1))
     s = ks.solve(ks.Mechanism("rigid", ks.Crank(0.1), parts), 0.0, crank_speed=10.0)
-    with pytest.raises(ks.ParameterError, match="bearing: at dyad1_A dyad1 and crank turn together, so nothing rolls"):
+    with pytest.raises(ks.ParameterError, match="bearing: at dyad1_A dyad1 and crank turn together, without relative"):
         by_ratings(s, "dyad1_A")
     found = ks.sizing.plain_bearing(s, "dyad1_A", diameter=0.02, width=0.05)
     assert found.largest_pressure * 0.001 == pytest.approx(np.hypot(*s.reaction("dyad1_A")), rel=1e-9)
@@ -301,11 +301,11 @@ def test_wrong_numbers_and_names_are_refused(wrong, message):
 PASSING = change_points.four_bar("parallelogram", "open")
 MACHINES = [
     (lambda: "pump", "A", "solution must be a Solution"),
-    (lambda: ks.solve(ks.crank_slider(0.05, 0.16), 0.0, crank_speed=0.0, sense=1), "A", "the crank stands"),
+    (lambda: ks.solve(ks.crank_slider(0.05, 0.16), 0.0, crank_speed=0.0, sense=1), "A", "the crank is at rest"),
     (lambda: pump(np.array([[20.0], [30.0]])), "A", "works on one design at a time"),
     (lambda: ks.solve(ks.crank_slider(0.05, 0.04), 0.0, crank_speed=1.0), "A", "does not close for crank angles 53.1"),
-    (lambda: saw("cam-circle"), "roller", "the turning of roller follows from its radius; give"),
-    (lambda: follower(pressed=False), "roller", "the turning of roller follows from its radius; give"),
+    (lambda: saw("cam-circle"), "roller", "the rotation of roller follows from its radius; give"),
+    (lambda: follower(pressed=False), "roller", "the rotation of roller follows from its radius; give"),
     (lambda: ks.solve(PASSING, 0.3, crank_speed=1.0), "A", "the load at A grows without bound"),
 ]
 
@@ -336,11 +336,11 @@ def test_plain_bearing_refuses(sizes, message):
 @every(
     "loads, shares, message",
     [
-        ([1.0], [1.0, 2.0], "shares must be as many as loads"),
-        ([1.0, 2.0], [0.0, 0.0], "one of them greater than 0"),
+        ([1.0], [1.0, 2.0], "shares and loads must be equal in number"),
+        ([1.0, 2.0], [0.0, 0.0], "with a share greater than 0"),
         ([-1.0, 2.0], [1.0, 2.0], "loads must not be negative, got -1"),
         ([1.0, math.nan], [1.0, -2.0], "loads.* must be finite.*; shares must not be negative"),
-        ([], [], "one of them greater than 0"),
+        ([], [], "with a share greater than 0"),
         (3.0, [1.0], "loads must be a tuple of numbers"),
     ],
 )

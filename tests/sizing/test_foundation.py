@@ -254,9 +254,9 @@ REFUSED = [
     ({"stiffness": []}, "stiffness must be a number or a list of up to three"),
     ({"stiffness": None}, "stiffness x must be a number"),
     ({"damping": -0.1}, "damping x must be at least 0"),
-    ({"stiffness": [1e5, 1e5], "damping": [0.1]}, "a list of as many as of stiffness, 2"),
-    ({"stiffness": [1e5] * 3}, "inertia and a third stiffness, that of turning, must be given together"),
-    ({"inertia": 3.0}, "inertia and a third stiffness, that of turning, must be given together"),
+    ({"stiffness": [1e5, 1e5], "damping": [0.1]}, "a list of 2 numbers like stiffness"),
+    ({"stiffness": [1e5] * 3}, "inertia and a third stiffness, for rotation, must be given together"),
+    ({"inertia": 3.0}, "inertia and a third stiffness, for rotation, must be given together"),
     ({"stiffness": [1e5] * 3, "inertia": -1.0}, "inertia must be greater than 0"),
     ({"centre": (0.0, math.nan)}, "centre y must be finite"),
     ({"mass": -1.0, "damping": math.nan}, "mass must be .*; damping x must be"),
@@ -283,8 +283,8 @@ MACHINES = [
     (lambda: pump(crank_acceleration=1.0), "constant crank speed other than 0, without acceleration"),
     (lambda: pump(np.array([[70.0], [80.0]])), "works on one design at a time"),
     (lambda: ks.solve(ks.crank_slider(0.05, 0.04), 0.0, crank_speed=75.4), "does not close for crank angles 53.1"),
-    (lambda: touching(0.06, 0.01), "B changes its velocity at once at 270 deg, a blow on the frame"),
-    (lambda: touching(0.05, 0.0), "B changes its velocity at once at 90 deg, a blow on the frame"),
+    (lambda: touching(0.06, 0.01), "B changes its velocity at once at 270 deg, a shock on the frame"),
+    (lambda: touching(0.05, 0.0), "B changes its velocity at once at 90 deg, a shock on the frame"),
 ]
 
 
@@ -301,7 +301,7 @@ def test_machines_without_periodic_vibration_are_refused(machine, message):
     [
         ({"v_rms": 0.0, "tuning": -1.0}, "v_rms must be greater than 0.*; tuning must be greater than 0"),
         ({"tuning": 1.0, "damping": 0.0}, "harmonic 1 of the crank meets the natural frequency of 12 Hz"),
-        ({"v_rms": 10.0}, r"no block is needed: 0\.\d+ kg keep v_rms, and the moving links alone have 1.5 kg"),
+        ({"v_rms": 10.0}, r"no block is needed: 0\.\d+ kg suffice for v_rms, and the moving links already have 1.5 kg"),
     ],
 )
 def test_block_for_refuses(wrong, message):

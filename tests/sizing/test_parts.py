@@ -130,7 +130,7 @@ def test_a_search_makes_the_number_of_a_part_least():
 
 def test_robust_searches_refuse_numbers_of_parts():
     spread = ks.design.Spread(0.9, {"slider.mass": "normal 0 % +- 1 %"})
-    with pytest.raises(ks.ParameterError, match="cannot be robust; make it a limit"):
+    with pytest.raises(ks.ParameterError, match="has no quantile; use it as a limit"):
         ks.design.optimise(SCENE, {"slider.mass": (400.0, 600.0)}, PIN.number("shear_stress"), robust=spread)
 
 

@@ -519,7 +519,7 @@ def test_unknown_names_are_refused():
         (lambda: solved().sections("coupler", SAW, at=10**400), "at must be at most .* memory"),
         (lambda: ks.needs(solved(), "O", progress=False, bars={"coupler": PLAIN}), "lacks its second_moment"),
         (lambda: ks.needs(solved(), "O", progress=False, shaft={"length": 1.0}), "polar_moment must be a number"),
-        (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "needs: bars: the crank stands"),
+        (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "needs: bars: the crank is at rest"),
         (lambda: ks.plots.sections(3), "found must be Sections"),
         (lambda: ks.plots.sections(solved().sections("coupler", SAW), ax=[1]), "ax must be 4 Axes"),
     ],

@@ -167,8 +167,10 @@ def test_ordinary_machines_are_of_first_order(quantity, inputs):
 
 
 def orders(text):
-    """What both orders make, as told."""
-    return tuple(float(number) for number in re.search(r"makes (\S+) \S+(?: m)?, the second (\S+),", text).groups())
+    """Sizes of both orders in the warning."""
+    return tuple(
+        float(number) for number in re.search(r"first order (\S+) \S+(?: m)?, second order (\S+),", text).groups()
+    )
 
 
 def test_both_orders_are_named_near_a_toggle():
@@ -180,19 +182,19 @@ def test_both_orders_are_named_near_a_toggle():
     first, second = orders(text)
     assert first == pytest.approx(u * abs(slope), rel=0.05)
     assert second == pytest.approx(np.sqrt(3.0) * 0.5 * abs(low + high - 2 * here), rel=0.05)
-    assert "most of it of crank_length" in text
+    assert "mostly from crank_length" in text
     assert "vary the inputs there" in text
     assert told(FOLDING, angle, "slider_position", {"crank_length": 0.1 * u}) == []
 
 
 def test_an_input_that_opens_the_mechanism_is_named():
     (text,) = told(FOLDING, [0.5, np.pi / 2, 2.0], "|O|", {"slider.mass": 0.01, "crank_length": 2e-4})
-    assert "at 90 deg with crank_length 0.0002 larger or smaller there is no value" in text
+    assert "at 90 deg with crank_length 0.0002 larger or smaller the quantity has no value" in text
 
 
 def test_value_without_first_order_is_reported():
     (text,) = told(SAW, 0.0, "slider_position", {"guide_offset": 1e-4})
-    assert "1 of 1 crank angles: at 0 deg the first makes 0 m, the second 4.3e-09" in text
+    assert "1 of 1 crank angles: at 0 deg first order 0 m, second order 4.3e-09" in text
 
 
 def test_designs_of_a_batch_are_told_together():
@@ -258,12 +260,12 @@ def test_product_of_two_inputs_equals_monte_carlo():
     assert first == float(linear.tolerance) == 0.0
     assert second == pytest.approx(np.sqrt(np.mean(torque**2)), rel=0.03)
     assert second == pytest.approx(300.0 * 2e-4 * 0.3 / 2.0, rel=0.03)
-    assert "most of it of process_force.force and guide_offset together" in text
+    assert "mostly from process_force.force and guide_offset together" in text
 
 
 def test_two_inputs_that_open_together_are_named():
     (text,) = told(FOLDING, 1.5 * np.pi, "|O|", {"crank_length": 6e-5, "guide_offset": 6e-5, "slider.mass": 0.01})
-    assert "with crank_length 6e-05 and guide_offset 6e-05 larger there is no value" in text
+    assert "with crank_length 6e-05 and guide_offset 6e-05 larger the quantity has no value" in text
 
 
 def test_inputs_leaving_a_table_are_reported():
@@ -273,7 +275,9 @@ def test_inputs_leaving_a_table_are_reported():
         for more in (1e-9, 0.01)
     )
     inputs, angles = {"crank_length": 1e-4}, np.linspace(0.0, 6.0, 25)
-    with pytest.warns(ks.ConditionWarning, match=r"may be more: with them moved, table over travel: the slider goes"):
+    with pytest.warns(
+        ks.ConditionWarning, match=r"may be larger: with changed inputs, table over travel: the slider goes"
+    ):
         found = whole.solve(angles).uncertainty("O", inputs)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -358,5 +362,5 @@ def test_a_doubt_is_told_once_and_names_the_quantities():
         largest_with_uncertainty(YOKE, {"crank_length": 0.05})
     (told,) = [str(item.message) for item in caught]
     assert told.startswith("Scotch yoke: the uncertainties of balancing_torque")
-    assert re.search(r"are of first order in the inputs, and may be more; that of \w+ most: at ", told)
+    assert re.search(r"are of first order in the inputs, and may be larger; the worst is \w+: at ", told)
     assert told.count("vary the inputs there") == 1

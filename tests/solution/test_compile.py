@@ -213,7 +213,7 @@ def test_one_kept_parameter_may_be_a_text():
     [
         (lambda program: program(0.5, ["slider.mass"]), "values must be a dict"),
         (lambda program: program(0.5, 3), "values must be a dict"),
-        (lambda program: program.derivatives(0.5, ()), "by names no parameter"),
+        (lambda program: program.derivatives(0.5, ()), "by is empty"),
         (lambda program: program([]), "program: there are no crank angles"),
         (lambda program: program(np.array([])), "program: there are no crank angles"),
         (lambda program: program(["a"]), "program: crank_angle must be a number"),

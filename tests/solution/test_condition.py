@@ -96,7 +96,7 @@ class Opaque(ks.SliderGroup):
 @pytest.mark.parametrize(("kind", "angles"), [(Choosy, ANGLES[:1]), (Opaque, ANGLES)])
 def test_groups_not_recorded_have_it_by_differences(kind, angles):
     own = unwarned(ks.Mechanism("own", ks.Crank(0.3), (kind(0.5, slider=BODY),)), angles)
-    with pytest.warns(ks.ConditionWarning, match=r"own: a group of it .* condition is by differences"):
+    with pytest.warns(ks.ConditionWarning, match=r"own: a group of it .* condition follows from differences"):
         found = own.condition
     exact = unwarned(ks.crank_slider(0.3, 0.5, slider=BODY), angles).condition
     np.testing.assert_allclose(found, exact, rtol=1e-6)

@@ -276,7 +276,7 @@ def test_right_own_group_equals_the_librarys(interpreted, engine):
 
 @pytest.mark.parametrize("on", [3, None, ["A"], "Q"])
 def test_joint_of_an_own_group_is_named_and_there(on):
-    with pytest.raises(ks.ParameterError, match=r"on of Pan must be a name|hangs on joint 'Q'"):
+    with pytest.raises(ks.ParameterError, match=r"on of Pan must be a name|is attached to joint 'Q'"):
         ks.Mechanism("pan", ks.Crank(0.1), (Pan(ROD, on=on),))
 
 

@@ -65,7 +65,7 @@ def test_derivatives_take_values_in_any_position():
     assert every.keys() == program.parameters.keys()
     assert np.array_equal(every[name], program.derivatives(ANGLES, values=values)["balancing_torque"][name])
     assert not np.array_equal(wanted[name], program.derivatives(ANGLES)["balancing_torque"][name])
-    with pytest.raises(ks.ParameterError, match="both mappings: give the names to derive by as a list"):
+    with pytest.raises(ks.ParameterError, match="both mappings: give the parameter names as a list"):
         program.derivatives(ANGLES, {name: 1.0}, values)
 
 
@@ -120,7 +120,7 @@ REFUSED = [
     ({"engine": "gpu", "precision": "half"}, "engine is 'gpu'.*precision is 'half'"),
     ({"device": "gpu"}, 'device is for engine="jax"'),
     ({"device": "cpu", "engine": "numpy"}, 'device is for engine="jax"'),
-    ({"device": 0, "engine": "jax"}, 'device must be a text as "gpu", got 0'),
+    ({"device": 0, "engine": "jax"}, 'device must be a text such as "gpu", got 0'),
     ({"device": ["gpu"], "engine": "jax"}, "device must be a text"),
 ]
 

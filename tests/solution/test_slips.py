@@ -49,7 +49,7 @@ CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
 @every(
     ("found", "words"),
     [
-        (rubbing(O=ks.PinFriction(30.0, 0.05)), "friction.O.mu is 30; nothing rubs so much; does it stand in place of"),
+        (rubbing(O=ks.PinFriction(30.0, 0.05)), "friction.O.mu is 30; no surface has this much friction; is it a size"),
         (rubbing(O=ks.PinFriction(0.05, 30.0)), "friction.O.radius is 30 m, 15 times the longest link (2 m); is it in"),
         (rubbing(O=ks.PinFriction(0.05, 2.5)), "friction.O.radius is 2.5 m"),
         (rubbing(guide=ks.GuideFriction(0.1, 100.0)), "friction.guide.half_length is 100 m"),
@@ -67,10 +67,10 @@ CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
         (loaded([ks.Spring(1e5, 1.0), ks.Spring(1e5, -1500.0)]), "spring2.free_position is -1500 m"),
         (loaded(ks.PointSpring(1e3, 0.0, between=("B", (1500.0, 20.0)))), "point_spring.between.2.x is 1500 m"),
         (loaded(ks.TorsionSpring(1e3, 45.0, on="coupler")), "torsion_spring.free_angle is 45 rad"),
-        (lambda: hints(crank_speed=3200.0), "the pin of the crank goes at 960 m/s, faster than in any racing engine"),
-        (lambda: hints(crank_speed=320.0), "the pin of the crank goes at 96 m/s"),
+        (lambda: hints(crank_speed=3200.0), "the pin of the crank moves at 960 m/s, faster than in any racing engine"),
+        (lambda: hints(crank_speed=320.0), "the pin of the crank moves at 96 m/s"),
         (lambda: hints(crank_speed=-3200.0), "3200 rad/s, in rpm? That makes 335.103 rad/s"),
-        (lambda: hints(crank_speed=np.linspace(1.0, 3200.0, 24)), "the pin of the crank goes at 960 m/s"),
+        (lambda: hints(crank_speed=np.linspace(1.0, 3200.0, 24)), "the pin of the crank moves at 960 m/s"),
         (made(saw, crank_length=300.0, coupler_length=2000.0), "the coupler is 2000 m long; are lengths in mm?"),
         (made(saw, crank_length=0.005, coupler_length=20.0), "4000 times the crank (0.005 m); is one of them in mm?"),
         (
@@ -95,10 +95,10 @@ CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
         ),
         (
             lambda: hints(angle=720),
-            "720 is taken as one crank angle, 720 rad; for 720 of them over the turn give np.lin",
+            "720 is used as one crank angle, 720 rad; for 720 of them over the turn give np.lin",
         ),
         (lambda: hints(angle=np.int64(100)), "for degrees np.radians(100)"),
-        (lambda: hints(angle=720.0), "the crank angle 720 looks like degrees; it is taken as radians"),
+        (lambda: hints(angle=720.0), "the crank angle 720 looks like degrees; it is used as radians"),
         (lambda: hints(angle=[30.0, 60.0]), "crank angles 30 and 60 look like degrees"),
         (lambda: hints(angle=np.radians(TURN)), "are a turn in radians, converted from degrees once more"),
         (lambda: hints(angle=np.radians(np.linspace(0, 2 * np.pi, 37))), "converted from degrees once more"),
@@ -172,7 +172,7 @@ def test_shipped_cases_have_no_slips():
             ),
             "start: the crank angle 90 looks like degrees",
         ),
-        (lambda: ks.solve(saw(), 0.5, crank_speed=1.0).at(720), "crank-slider: 720 is taken as one crank angle"),
+        (lambda: ks.solve(saw(), 0.5, crank_speed=1.0).at(720), "crank-slider: 720 is used as one crank angle"),
         (lambda: ks.solve(saw(), 0.5, crank_speed=1.0).explain("O", 90), "the crank angle 90 looks like degrees"),
         (
             lambda: ks.design.contact(

@@ -61,7 +61,7 @@ def test_a_failing_reference_is_told_apart():
 
 def test_a_ratio_of_nothing_to_nothing_is_told():
     found = sweep(factories.pump, DESIGNS[:2].assign(mass=[0, 1]), ["ratio rms B"], reference=factories.pump(0.1, 0.0))
-    assert found[FAILED].tolist() == ["ratio rms B is no number, such as 0 / 0", ""]
+    assert found[FAILED].tolist() == ["ratio rms B is not a number, as for 0 / 0", ""]
     assert found.iloc[1, 2] == 0.0
 
 
@@ -170,7 +170,7 @@ def test_plain_function_is_called_a_design():
 def test_a_batch_of_another_shape_is_refused():
     made = lambda crank, mass: factories.pump(np.full((3, 1), 0.1), 1.0)  # noqa: E731
     found = sweep(made, DESIGNS[:2], OUTPUTS, angles=36)
-    assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
+    assert found[FAILED].str.contains("arrays need the shape (designs, 1)", regex=False).all()
 
 
 @pytest.mark.slow

@@ -52,7 +52,7 @@ def test_sample_takes_quantiles():
     uniform = [[0.5, 0.0, 0.25], [stats.norm.cdf(1.0), 1.0, 1.0]]
     table = designs.sample(SPREADS, np.array(uniform))
     assert table.to_numpy() == pytest.approx(np.array([[700, -30, 20], [705, -10, 26]]))
-    with pytest.raises(ks.ParameterError, match=r"3 parameters need as many columns, got \(2, 2\)"):
+    with pytest.raises(ks.ParameterError, match=r"3 parameters need one column each, got \(2, 2\)"):
         designs.sample(SPREADS, np.zeros((2, 2)))
 
 

@@ -205,9 +205,9 @@ def test_all_that_is_wrong_is_told_at_once():
     for text in (
         "did you mean 'slider.mass'",
         '"kg" does not measure the same as "m"',
-        "column 'cam.centre.x [mm]' must hold numbers",
+        "column 'cam.centre.x [mm]' must contain numbers",
         "did you mean 'largest O'",
-        "output 'harmonic_180 O' takes more than 360 crank angles, got 360",
+        "output 'harmonic_180 O' needs more than 360 crank angles, got 360",
         "chunk must be a whole number of at least 1, got 0",
         "engine is 'fortran', allowed: 'compiled', 'numpy'",
     ):
@@ -217,8 +217,8 @@ def test_all_that_is_wrong_is_told_at_once():
 WRONG = {
     "a list": (factories.pump, [0.1, 0.2], OUTPUTS, {}, "designs must be a pandas DataFrame, .* got list"),
     "a client": (factories.pump, DESIGNS, OUTPUTS, {"executor": 2}, r"client.get_executor\(\)\), got int"),
-    "no designs": (factories.pump, DESIGNS[:0], OUTPUTS, {}, "there are no designs"),
-    "no outputs": (factories.pump, DESIGNS, [], {}, "no outputs are asked for"),
+    "no designs": (factories.pump, DESIGNS[:0], OUTPUTS, {}, "the table of designs is empty"),
+    "no outputs": (factories.pump, DESIGNS, [], {}, "give at least one output"),
     "half an angle": (factories.pump, DESIGNS, OUTPUTS, {"angles": 1.5}, "angles must be a whole number"),
     "no reference": (factories.pump, DESIGNS, ["ratio rms O"], {}, "ratios need a reference: a Scene"),
     "other parameters": (factories.pump, DESIGNS.assign(arm=1), OUTPUTS, {}, "unexpected keyword argument 'arm'"),

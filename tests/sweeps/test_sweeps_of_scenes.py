@@ -112,10 +112,10 @@ WRONG = [
         six_bar(),
         {"slider2.mass": [1.0]},
         {"reference": "plain"},
-        "reference must be a Scene, as the source is a Scene, got 'plain'",
+        "reference must be a Scene, like the source, a Scene, got 'plain'",
     ),
     (six_bar(), {"slider2.mass": [1.0]}, {}, "ratios need a reference: a Scene, got None"),
-    (3, {"slider2.mass": [1.0]}, {}, "source must be a Case, as of ks.load_case, a Scene or a function"),
+    (3, {"slider2.mass": [1.0]}, {}, "source must be a Case, as from ks.load_case, a Scene or a function"),
     (six_bar().mechanism, {"slider2.mass": [1.0]}, {}, "source must be a Case"),
 ]
 

@@ -91,13 +91,13 @@ def test_counts_that_are_no_power_of_two_are_refused(count):
 @pytest.mark.parametrize(
     ("case", "remedy"),
     [
-        (ks.load_case("chain_unit"), 'nor has the case file any for this variant, in "tolerances"'),
-        (ram, "are given, such as"),
+        (ks.load_case("chain_unit"), '"tolerances" of the case file has none for this variant'),
+        (ram, "give spreads, such as"),
         (ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi), "are given, such as"),
     ],
 )
 def test_tolerances_need_spreads(case, remedy):
-    with pytest.raises(ks.ParameterError, match="no spreads") as error:
+    with pytest.raises(ks.ParameterError, match="give spreads") as error:
         tolerances(case, OUTPUT)
     assert remedy in str(error.value)
 

@@ -23,7 +23,7 @@ class Cam:
 
     Examples
     --------
-    A cam of one's own: r = 0.3 m + 5 mm cos(2 phi).
+    Your own cam: r = 0.3 m + 5 mm cos(2 phi).
 
     >>> import kinetostatics as ks
     >>> class Oval(ks.cams.Cam):
@@ -36,7 +36,7 @@ class Cam:
     """
 
     knots: Any = ()
-    """Crank angles at which its second derivative kinks or jumps, each a `Breakpoint`."""
+    """Crank angles at which the second derivative of the radius kinks or jumps, each a `Breakpoint`."""
 
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
@@ -103,10 +103,10 @@ class Cam:
         return profile(self, roller_radius, angle, side)
 
     def base_radius(self, pressure_angle):
-        """Radius of the smallest base circle that limits the pressure angle (rad) for the same rise, m.
+        """Smallest base circle radius, m, that keeps the pressure angle below a limit (rad) for the same rise.
 
-        It is the smallest radius of r + c with c = max(abs(r') / tan(pressure_angle) - r), for a follower on the crank
-        ray. With such a cam the mechanism has another stroke and coupler.
+        The result is min(r + c) with c = max(abs(r') / tan(pressure_angle) - r), for a follower on the crank
+        ray. The mechanism with this cam has another stroke and another coupler length.
 
         Examples
         --------
@@ -127,7 +127,7 @@ class Cam:
         return lowest(lambda angle: self.radius(angle)[0], self).value + highest(lacking, self).value
 
     def export(self, path, *, roller_radius, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False):
-        """Write the cam for the workshop; the suffix of the path selects a 1:1 drawing (.svg), a table (.csv) or .dxf.
+        """Write the cam for the workshop; the suffix selects a 1:1 drawing (.svg), a table (.csv) or .dxf.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class Cam:
         ParameterError
             The roller undercuts the cam, or the cutter does not fit into a hollow of it.
         FileError
-            The suffix is another, or the file cannot be written.
+            The suffix is not supported, or the file cannot be written.
         MissingLibraryError
             .dxf needs ezdxf (extra `workshop`).
 
@@ -171,7 +171,7 @@ class Cam:
 
 
 RADIUS_ANGLES = np.linspace(0.0, 2 * np.pi, 720, endpoint=False)
-"""Crank angles among which the smallest radius and the sharpest curvature of a cam are sought, rad."""
+"""Crank angles at which the search for smallest radius and sharpest curvature samples the cam, rad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +180,7 @@ class Harmonic(checks.Checked, Cam):
 
     r = a0 + a1 cos(psi) + a2 cos(2 psi) + ... + b1 sin(psi) + b2 sin(2 psi) + ...,  psi = phi - guide_angle
 
-    Harmonics that are zero cost nothing; parameter paths of the others are "cam.cosine.2", "cam.sine.1".
+    Zero harmonics cost no time; the parameter paths of the others are "cam.cosine.2", "cam.sine.1".
 
     Parameters
     ----------

@@ -28,10 +28,10 @@ CURVES = {"A": "pitch curve of the cam"}
 TERMS = {
     "place.radius": ("r", "radius of the pitch curve"),
     "place.slope": ("r'", "its first derivative by phi"),
-    "place.farther": ("p", "by how much that is more than the mean radius"),
+    "place.farther": ("p", "radius less the mean radius"),
     "place.curvature": ("r''", "its second derivative by phi"),
     "departing": ("b", "second derivative of the roller centre plus its place"),
-    "resolve.force": ("Q", "all that acts on the block, with friction"),
+    "resolve.force": ("Q", "resultant force on the block, with friction"),
     "resolve.lean": ("tau", "tangent of the pressure angle"),
     "resolve.outward": ("N", "force on the block along the ray"),
 }
@@ -58,9 +58,9 @@ def departure(ray, slope, curvature):
 
 
 def resolve(ray, radius, slope, load):
-    """Cam force on the roller, slot force on the block, N, and the wrench about O that the crank supplies (kernel).
+    """Cam force on the roller, slot force on the block, N, and the wrench of the crank about O (kernel).
 
-    `load` is the wrench about A on the block, from its own loads and the groups that it carries.
+    `load` is the wrench about A on the block, from its own loads and from the groups attached to it.
     """
     force = vector_or_zero(load.force)
     lean = slope / radius

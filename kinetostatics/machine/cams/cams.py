@@ -1,4 +1,4 @@
-"""Fixed cams: the circle and the cosine law in closed form; all other public names of `ks.cams` stand here too.
+"""Fixed cams: the circle and the cosine law in closed form; `ks.cams` offers all its other public names here too.
 
 A cam is the pitch curve of the roller centre in polar form about O: r(phi) and two derivatives, m. Closed forms and
 splines are smooth and keep their digits all round the turn.
@@ -141,7 +141,7 @@ class Circle(Cam):
 
 @dataclass(frozen=True, eq=False)
 class CosineLaw(checks.Checked, Cam):
-    """Cam that moves the slider exactly by x_B = mean + amplitude cos(phi) along a guide through O.
+    """Cam that gives the slider the exact motion x_B = mean + amplitude cos(phi) along a guide through O.
 
     A lies on the ray at the distance of the coupler length L from B, so r = x_B cos(phi) - w, where w is the signed
     root of L^2 - x_B^2 sin(phi)^2. The two branches of the root join smoothly for one length only, L = max of
@@ -155,7 +155,7 @@ class CosineLaw(checks.Checked, Cam):
         r = c* root - c d,   d = root - x_B = g + a c*
         g = (a^2 (2 + c* c - 3 c*^2) - a c* root) / (root + x_B)
 
-    where g loses one bit at most. The derivatives by c follow with k = a / root and w = k (c - c*):
+    where g loses at most one bit. The derivatives by c follow with k = a / root and w = k (c - c*):
 
         dr/dc = (w - 1) g,   d2r/dc2 = k g (2 - w (2 - g / root))
 

@@ -12,7 +12,7 @@ zero, at phi1 with d = max d = L and at phi2 with d = min d = -L. With h1 = phi 
 
 whose derivatives follow from d''' alone: q' = - integral of (1 - s) s d''', h q'' = integral of (3 s^2 - 2 s) d'''. So
 nothing cancels at the singular angles, and w is as smooth around them as the law. Both L are equal for one phase of a
-law only; for others `from_law` raises an error that says which phase.
+law only; otherwise `from_law` raises an error that gives this phase.
 """
 
 from dataclasses import dataclass
@@ -87,7 +87,7 @@ class LawCam(Cam):
     near: SingularPosition
 
     TABULATED = True
-    RULES = checks.Rules("cam from a law")  # no number of it is a parameter by itself
+    RULES = checks.Rules("cam from a law")  # none of its numbers is a parameter
 
     @property
     def singular_angles(self):

@@ -57,7 +57,7 @@ MAX_POISSONS_RATIO = 0.5
 
 
 class LineContact(NamedTuple):
-    """A line contact of a group: `body`, a `Roller` or `Face`, under the force of that name."""
+    """Line contact of a group: `body`, a `Roller` or `Face`, and the name of its contact force."""
 
     body: Any
     force: str
@@ -90,12 +90,12 @@ class PressedBody(checks.Checked):
 
 @dataclass(frozen=True, eq=False)
 class Roller(PressedBody):
-    """Size and materials of a roller on a cam; a cam with one has the output "contact_pressure".
+    """Size and materials of a roller on a cam; a cam with a `Roller` has the output "contact_pressure".
 
     Parameters
     ----------
     radius, width : float or array
-        m; the width of the contact.
+        m; `width` is the width of the contact.
     youngs_modulus : float or array
         Pa.
     poissons_ratio : float or array

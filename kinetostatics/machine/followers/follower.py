@@ -34,7 +34,7 @@ OUTLINE_POINTS = 181
 class DiskCam(Cam):
     """Cam of a follower with ``pitch(law values) -> P, P', P''``; made by its `disk`.
 
-    It turns with the crank; its polar angles, which are what cams call crank angles, are from +x at crank angle 0.
+    It turns with the crank. Its polar angles count from +x at crank angle 0; `Cam` calls them crank angles.
     """
 
     follower: Any
@@ -51,7 +51,7 @@ class DiskCam(Cam):
     def export(self, path, *, clockwise=True, **others):
         """Write the cam for the workshop, as every cam; see `Cam.export`.
 
-        The roller goes around it clockwise, as it does where the crank turns counter-clockwise, unless told.
+        By default the roller goes around it clockwise, as for a crank that turns counter-clockwise.
         """
         super().export(path, clockwise=clockwise, **others)
 

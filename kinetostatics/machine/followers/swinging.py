@@ -1,13 +1,13 @@
 """Swinging roller follower on a cam that turns with the crank: an arm about a fixed pivot, pressed outward by the cam.
 
-The arm stands at the angle beta(phi) from the line from its pivot Q to O, to the side that its assembly says; with l
+The arm stands at the angle beta(phi) from the line from its pivot Q to O, on the side that `assembly` selects; with l
 the arm along p, the roller centre is P = Q + l p, and seen from the cam it moves by w = P' - left(P) with the crank
 angle. The cam pushes across that, by left(w) / |w|, whose lever about Q is l times the cosine of the pressure angle,
 
     cosine = -(Q x p) / |w|,   Q x p = assembly |Q| sin(beta)
 
 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7). Moments about the pivot give the contact force; of
-what acts on the arm about it, M, the crank feels the moment -M dtheta/dphi, whatever the cam looks like.
+M, the moment of all loads on the arm about it, the crank feels -M dtheta/dphi for any shape of the cam.
 """
 
 from dataclasses import dataclass
@@ -88,7 +88,7 @@ def resolve(motion, arm_length, load):
 
 @dataclass(frozen=True, eq=False)
 class SwingingFollower(follower.Follower):
-    """Arm about the fixed joint `pivot_name` whose roller runs on a cam fixed to the crank, as a law says.
+    """Arm about the fixed joint `pivot_name` whose roller runs on a cam fixed to the crank, by a law.
 
     Parameters
     ----------
@@ -109,14 +109,14 @@ class SwingingFollower(follower.Follower):
     label : str
         Appended to the names of link and forces of a second swinging follower in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
 
     Raises
     ------
     ParameterError
-        The law is none, or a value no machine can have; when it is solved: the arm crosses the line of centres.
+        The law is invalid, or a value is impossible; when it is solved, the arm crosses the line of centres.
 
     Notes
     -----

@@ -1,7 +1,7 @@
 """Roller and flat followers on a straight guide, moved by a cam that turns with the crank.
 
 In the axes of the guide the pin is P = (s, e), with s(phi) by a law and e the offset of the guide from O. Of the force
-along the guide, F, the crank feels the moment -F s', whatever the cam looks like.
+along the guide, F, the crank feels the moment -F s' for any shape of the cam.
 
 A roller centre moves by (s' + e, -s) along the pitch curve, seen from the cam, which pushes across that:
 
@@ -117,7 +117,7 @@ def roller_forces(travel, guide, load, push):
 
 @dataclass(frozen=True, eq=False)
 class RollerFollower(GuidedFollower):
-    """Follower on a straight guide whose roller runs on a cam fixed to the crank, as a law of the crank angle says.
+    """Follower on a straight guide whose roller runs on a cam fixed to the crank, by a law of the crank angle.
 
     Parameters
     ----------
@@ -133,14 +133,14 @@ class RollerFollower(GuidedFollower):
     label : str
         Appended to the names of link and forces of a second roller follower in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
 
     Raises
     ------
     ParameterError
-        The law is none, or a value no machine can have; when it is solved: the roller centre comes to the foot of O.
+        The law is invalid, or a value is impossible; when it is solved, the roller centre comes to the foot of O.
 
     Notes
     -----
@@ -226,7 +226,7 @@ class FlatFollower(GuidedFollower):
         Distance of the face from O along the guide, m, by the crank angle from +x: one of `laws`, or a function that
         gives position and three derivatives. `disk` is the cam that follows.
     guide : Guide
-        From O outward; its offset, that of the pin, has to do with the moment on the guide alone.
+        From O outward; its offset is the offset of the pin and affects only the moment on the guide.
     follower : Link
         Reference joint `pin`, along the guide; springs and other loads act on it by its name.
     pin : str
@@ -234,21 +234,21 @@ class FlatFollower(GuidedFollower):
     label : str
         Appended to the names of link and forces of a second follower in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
     face : Face, optional
         Width and material of the face, for its contact pressure.
 
     Raises
     ------
     ParameterError
-        The law is none, or a value no machine can have; when it is solved: the face comes to O.
+        The law is invalid, or a value is impossible; when it is solved, the face comes to O.
 
     Notes
     -----
     "contact_force" (N), of the cam on the face, positive outward: where it is negative the follower would lift off.
     "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment" (N m) about `pin`; "guide",
     the same force as a vector. "contact_place" (m), of the contact from O along the guide's left normal.
-    "curvature_radius" (m), of the cam there: where it is not positive no cam moves the follower so. With a face
+    "curvature_radius" (m), of the cam there: where it is not positive, no cam gives this motion. With a face
     "contact_pressure" (Pa), NaN where the follower would lift off.
 
     Examples
@@ -290,7 +290,7 @@ class FlatFollower(GuidedFollower):
         return tuple(along * (part - 1j * slope) for part, slope in pairwise(law))
 
     def closure(self, placement):
-        """Radius of curvature of the cam beside the distance of its contact from O, squared, negative if hollow."""
+        """Squared ratio of the cam's radius of curvature to the distance of its contact from O, negative if hollow."""
         travel = placement.travels[self.moved]
         radius, reach = travel.position + travel.second, travel.position
         return radius * abs(radius) / (radius * radius + reach * reach + travel.first * travel.first)

@@ -4,7 +4,7 @@ The user chooses the assembly mode by the field `assembly` of a group, +1, -1, "
 sign, which the kernels take.
 
 `Branch` keeps two facts of the structure: `passage`, the kind of change points that the branch passes, and `is_close`,
-whether the group comes so close to a limit position that `near_dead_centre` saves digits.
+whether the group comes so close to a limit position that the kernels of `near_dead_centre` are needed.
 """
 
 import math
@@ -22,8 +22,8 @@ from . import near_dead_centre
 from .change_points import FAR, MEETING, RHOMBUS, SIDES, TWO_TURN_KINDS, parse_carrier
 
 MAX_ULPS = 8
-"""Largest difference of lengths that count as equal, in units of the last place of the longest length."""
-SEVERAL_DESIGNS = "the designs of a batch pass change points at crank angles of their own: ask a single design"
+"""Largest difference of equal lengths, in units of the last place of the longest length."""
+SEVERAL_DESIGNS = "the designs of a batch pass change points at different crank angles; solve a single design"
 QUADRANTS = {0: "x >= 0", 1: "x < 0 <= y", -1: "x < 0, y < 0"}
 """Quadrants of a direction (x, y) whose angle, from -pi to pi, is halved."""
 
@@ -37,7 +37,7 @@ def equality(*lengths):
 class Branch:
     """Branch of a group with the fields `assembly` and `on`.
 
-    Its kinds give the direction `start` from which the crank angle is halved, by default that of the pivot.
+    The crank angle is halved from the direction `start`, by default the direction of the pivot.
     """
 
     passage: str = field(default="", init=False, repr=False)
@@ -49,7 +49,7 @@ class Branch:
     """Kernels through change points and close to limit positions."""
     offset = 0.0
     IS_ON_ROCKERS = False
-    """Whether it passes change points on the pin of a rocker too (`carriers`)."""
+    """Whether it also passes change points on the pin of a rocker (`carriers`)."""
 
     @property
     def sizes(self):
@@ -72,7 +72,7 @@ class Branch:
 
     @property
     def side(self: Any):
-        """+1 or -1: its side where no change point is passed."""
+        """+1 or -1: its side without change points."""
         return SIDES.get(self.assembly, self.assembly)
 
     def by_branch(self: Any, placement, *given):
@@ -95,8 +95,8 @@ class Branch:
         return replace_unchecked(self, passage=passage, is_close=is_close)
 
     def refuse_word(self: Any, pins):
-        """Raise `ParameterError`: a group on other joints than these pins passes no change points."""
-        where = f"it hangs on {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
+        """Raise `ParameterError`: a group passes change points only on these pins."""
+        where = f"it is attached to {self.on!r}" if self.on != "A" else "the crank pin slides in its slot"
         problem = f"assembly {self.assembly!r} is for a group on {pins}, but {where}; give +1 or -1"
         checks.require(self.RULES.owner, problem)
 

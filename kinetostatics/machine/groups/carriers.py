@@ -1,8 +1,8 @@
 """Rockers whose pin is the crank pin of a group that passes change points.
 
-The angle of the rocker is followed over a turn of the crank, once as the mechanism is made. It is a whole number of
-turns for one of the crank, `Carrier.turns`, and stays within half a turn about `Carrier.degrees` besides; both are part
-of the structure.
+The angle of the rocker is followed over a turn of the crank, once, when the mechanism is made. It is `Carrier.turns`
+times the crank angle plus a remainder within half a turn about `Carrier.degrees`; both numbers are part of the
+structure.
 """
 
 from contextlib import suppress
@@ -24,7 +24,7 @@ MAX_REMAINDER = 165.0
 ANGLE_TOLERANCE = 1e-9
 """Difference of angles, rad, or turns that is rounding."""
 AWAY = 0.0123
-"""Crank angle at which the search for change points begins, rad: none of them is likely to be there."""
+"""Crank angle at which the search for change points begins, rad; a change point there is unlikely."""
 
 
 def on_rocker(group, groups, throws):
@@ -33,7 +33,7 @@ def on_rocker(group, groups, throws):
     Raises
     ------
     ParameterError
-        It hangs on no such pin, or the rocker does not repeat its motion after a turn of the crank.
+        The pin belongs to no rocker, or the rocker does not repeat its motion after a turn of the crank.
     """
     placement = Crank(throws["A"].at[0] if "A" in throws else None).place(ANGLES)
     links: dict[str, str] = {}
@@ -74,7 +74,7 @@ def _on_rocker(group, placement, links):
 
 
 def change_points(mechanism, group, known):
-    """Yield crank angles in [0, 2 pi) of the change points that a group passes on a rocker, rad, but for known ones."""
+    """Yield crank angles in [0, 2 pi) of the change points that a group passes on a rocker, rad, without `known`."""
 
     def distance(angle, _=None):
         return group.placed(mechanism.place(angle)).divisor[1]

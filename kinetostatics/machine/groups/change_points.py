@@ -43,7 +43,7 @@ from ...numbers.planar import (
 from ..links import present
 
 SIDES: dict[Any, int] = {"open": 1, "crossed": -1}
-"""Words for an assembly that passes change points, and the side that it has where there is none."""
+"""Words for an assembly that passes change points, and its side without change points."""
 FAR, NEAR, MEETING, PARALLEL, KITE, RHOMBUS = "far", "near", "meeting", "parallel", "kite", "rhombus"
 BOTH = "both"
 """Slider group with a coupler as long as the crank, on a guide through O."""
@@ -76,7 +76,7 @@ def parse_carrier(passage):
 MIN_ROOT = 2.0**-27
 """Least root of a margin by which rates are divided."""
 MIN_DISTANCE = 2.0**-984
-"""Distance from a change point in place of 0; it changes no other distance."""
+"""Distance from a change point in place of 0; it does not change other distances."""
 TERMS = {
     "cosine": ("c", "cosine of half the crank angle from the line to the pivot, or of a quarter"),
     "sine": ("s", "sine of that"),
@@ -165,8 +165,8 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Direction, ratio and slope of coupler and rocker, then the last fields of `RockerMotion`, for a pin (kernel).
 
     The pin is one of the crank, or of a rocker. The branch is open (+1) or crossed (-1). `closure` leaves out the
-    change points. The sine of the transmission angle is a factor times a distance, which vanishes there alone;
-    `divisor` holds both.
+    change points. The sine of the transmission angle is a factor times a distance, which vanishes only there;
+    `divisor` is the pair of both.
     """
     carrier = parse_carrier(passage)
     turning = _turning(placement, on, pivot, carrier)
@@ -206,10 +206,10 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
 
 
 def slid(placement, on, coupler_length, guide, passage, side):
-    """Reach of a coupler along the guide, rate of the coupler and its slope, what to divide by, and closure (kernel).
+    """Reach of a coupler along the guide, rate of the coupler and its slope, divisor, and closure (kernel).
 
     With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
-    sin(psi/2) ("near") vanishes. What to divide by is a factor and the distance from the change points.
+    sin(psi/2) ("near") vanishes. The divisor is a factor and the distance from the change points.
     """
     kind, facing = parse_passage(passage)
     throw = placement.course(on).throw
@@ -228,10 +228,10 @@ def slid(placement, on, coupler_length, guide, passage, side):
 
 
 def slotted(placement, on, pivot, offset, passage, side):
-    """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel).
+    """Direction of a slotted lever, its ratio and the slope of that, reach, divisor, and closure (kernel).
 
-    The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. What to divide by is the
-    reach: a factor and the distance from the change point.
+    The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. The divisor is the reach, as
+    a factor and the distance from the change point.
 
     With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
     by a quarter of the angle: it is small where A passes close by the pivot.
@@ -286,9 +286,9 @@ def _mirrored(half, kind, a, d, m, side):
 
 
 def _swung(kind, half, spread, size, constant, side):
-    """Root of the factor that is no whole square, constant + 4 spread (sine or cosine)^2, and what follows from it.
+    """Root of the factor that is not a square, constant + 4 spread (sine or cosine)^2, and its derived values.
 
-    That is the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
+    These are the closure, the rate at which the links turn besides A -> O2, its slope, and `factor` and `distance` of
     its divisor. The spread of a four-bar is a d, of a slider, whose pivot is far away, a / 2.
     """
     cosine, sine, _ = half

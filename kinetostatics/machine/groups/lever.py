@@ -1,13 +1,13 @@
 """Lever group (RPR): block on a pin, sliding in a slotted lever about a fixed pivot; and its inversion, the cylinder.
 
 With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
-s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers: no angle is formed,
-and s is a product, so no digit is lost where it vanishes, which divides rates and forces.
+s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers. No angle is formed,
+and s is a product, so it keeps its digits near zero, where it divides rates and forces.
 
-Where the crank is as long as the pivot's distance, A meets the pivot: on a chosen side the lever turns about there at
-once, the words "open" and "crossed" carry the block on to the other side of the pivot (`change_points`).
+Where the crank is as long as the pivot's distance, A meets the pivot. On a chosen side the lever reverses there; the
+words "open" and "crossed" carry the block to the other side of the pivot (`change_points`).
 
-The swinging cylinder is the lever turned inside out, without offset: its rod points at the pivot, about which the
+The swinging cylinder is the inversion of the lever, without offset: its rod points at the pivot, about which the
 couple of the pair is taken.
 """
 
@@ -48,15 +48,15 @@ TERMS = {
     "along": ("t", "derivative by phi of the joint along the slot"),
     "across": ("n", "derivative by phi of the joint across the slot"),
     "sliding": ("z", "rate at which the joint slides along the slot"),
-    "swing": ("q", "what turning and sliding together add across the slot"),
+    "swing": ("q", "part of the acceleration across the slot from turning and sliding together"),
     "resolve.moment": ("K", "moment of both links about the pivot"),
-    "resolve.on_block": ("Q", "force of the slot on what slides in it"),
+    "resolve.on_block": ("Q", "force of the slot on the block"),
 }
 """Symbols and meanings of kernel lines in hand calculations."""
 
 
 class LeverMotion(NamedTuple):
-    """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same to divide by.
+    """A placed lever: `reach` is the pin's coordinate along the slot, `divisor` the same as a divisor.
 
     `change_points.divide` takes the divisor. `closure` is the reach squared over the squares of distance and speed of
     the pin, without change points: small where the lever spins fast.
@@ -186,7 +186,7 @@ class LeverGroup(RPRGroup):
     pivot : (x, y)
         Fixed pivot of the lever, m.
     on, pivot_name : str
-        Names of the joint it hangs on and of the joint it adds.
+        Names of the joint it is attached to and of the joint it adds.
     offset : float or array
         Of the slot's axis to the left of the pivot, m; 0: the slot points at the pivot.
     lever : Link
@@ -196,7 +196,7 @@ class LeverGroup(RPRGroup):
     label : str
         Appended to the names of links and forces of a second lever group in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
     assembly : +1, -1, "open" or "crossed"
         +1: the slot points to the block, -1: away from it. The words are for a group on A or another pin of the crank,
         as for `slotted_lever`.
@@ -204,13 +204,14 @@ class LeverGroup(RPRGroup):
     Raises
     ------
     ParameterError
-        A value no machine can have.
+        A value is impossible.
 
     Notes
     -----
-    Reactions: `on` (N) on the block, from what carries the joint; `pivot_name` (N), ground on lever; "slot_force" (N),
-    lever on block along the lever's left normal, and "slot_moment" (N m) about `on`. "block_position" (m) is the
-    coordinate of the block along the slot, from the foot of the pivot; negative where the slot points away from it.
+    Reactions: `on` (N) on the block, from the link that carries the joint; `pivot_name` (N), ground on lever;
+    "slot_force" (N), lever on block along the lever's left normal, and "slot_moment" (N m) about `on`.
+    "block_position" (m) is the coordinate of the block along the slot, from the foot of the pivot; negative where the
+    slot points away from the block.
 
     Further groups hang on a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
 
@@ -284,7 +285,7 @@ class CylinderGroup(RPRGroup):
     pivot : (x, y)
         Fixed pivot of the cylinder, m.
     on, pivot_name : str
-        Names of the joint it hangs on and of the joint it adds.
+        Names of the joint it is attached to and of the joint it adds.
     rod : Link
         Reference joint `on`, along the rod into the cylinder, toward the pivot.
     cylinder : Link
@@ -292,17 +293,17 @@ class CylinderGroup(RPRGroup):
     label : str
         Appended to the names of links and forces of a second cylinder group in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
     ParameterError
-        A value no machine can have.
+        A value is impossible.
 
     Notes
     -----
-    Reactions: `on` (N) on the rod, from what carries the joint; `pivot_name` (N), ground on cylinder; "cylinder_force"
-    (N), cylinder on rod along the cylinder's left normal, and "cylinder_moment" (N m) about the pivot.
+    Reactions: `on` (N) on the rod, from the link that carries the joint; `pivot_name` (N), ground on cylinder;
+    "cylinder_force" (N), cylinder on rod along the cylinder's left normal, and "cylinder_moment" (N m) about the pivot.
     "cylinder_length" (m) is the distance from pivot to pin.
 
     Examples

@@ -61,7 +61,7 @@ from ..links import present
 MIN_ROOT = 2.0**-100
 """Least root of closure, sine and cosine, by which rates and forces are divided."""
 NEGLIGIBLE_AREA = RELATIVE_OFFSET * NEGLIGIBLE_LENGTH * NEGLIGIBLE_LENGTH
-"""Product of two differences of lengths, m2, that changes no digit of others beside them."""
+"""Product of two differences of lengths, m2, that changes no digit of the others."""
 CLOSE_SHARE = 2.0**-5
 """Clearance below which a pin is close to a limit position, over the sum of length and crank radius."""
 TERMS = {
@@ -79,15 +79,15 @@ TERMS = {
     "slid.near": ("N", "factor that is smallest where the crank points along the right normal of the guide"),
     "slid.far": ("F", "factor that is smallest where the crank points along the left normal of the guide"),
     "slid.far_off": ("n", "square of the distance of the crank ray from the right normal of the guide"),
-    "inverse": ("i", "one over what rates and forces are divided by"),
-    "rate": ("z", "rate at which the links turn besides d"),
+    "inverse": ("i", "reciprocal of the divisor of rates and forces"),
+    "rate": ("z", "rate of the links relative to d"),
     "bend": ("z'", "derivative by phi of that"),
     "turning": ("q", "half less the rate of d"),
     "elongation.cosine": ("c", "cosine of the angle from the guide to what swings the inner joint"),
     "elongation.sine": ("s", "sine of that angle"),
     "elongation.turning": ("j", "place of the inner joint along the guide where that angle is 0 or half a turn"),
     "departure.departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
-    "straight": ("j", "what the pin would be off the line on which the slider moves were the coupler across it"),
+    "straight": ("j", "distance of the pin from the slider's line if the coupler were across it"),
 }
 """Symbols and meanings of kernel lines in hand calculations."""
 
@@ -95,7 +95,7 @@ TERMS = {
 class PivotFromPin(NamedTuple):
     """Line `d` from a pin of the crank to a pivot, and its squared length.
 
-    `radius` and `ground` go from O to pin and pivot; `slack` and `rest` are what rounding took off these, `gap` is
+    `radius` and `ground` go from O to pin and pivot; `slack` and `rest` are their rounding errors, `gap` is
     their difference. From the direction of the pivot, as a vector of length `reach`, `turn` is its cross product with
     the crank ray, `near_by` and `far_off` are squared distances of its tip and its opposite from the ray's tip.
     """
@@ -189,10 +189,10 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
 
 
 def slid(placement, on, coupler_length, guide, assembly):
-    """Reach of a coupler along the guide, its rate and the slope of that, what to divide by, and closure (kernel).
+    """Reach of a coupler along the guide, its rate and the slope of that, divisor, and closure (kernel).
 
     With y the sine of the crank angle from the guide, an offset e and a coupler l on a crank r the factors of closure
-    are l - e + r y and l + e - r y over l, parted by (1 + y) / 2 and (1 - y) / 2.
+    are l - e + r y and l + e - r y over l, with the weights (1 + y) / 2 and (1 - y) / 2.
     """
     throw = placement.course(on).throw
     (r, ahead), slack = throw.polar, throw.radius_and_rest[1]
@@ -214,7 +214,7 @@ def slid(placement, on, coupler_length, guide, assembly):
 
 
 def slotted(placement, on, pivot, offset, assembly):
-    """Direction of a slotted lever, its ratio and the slope of that, reach, what to divide by, and closure (kernel)."""
+    """Direction of a slotted lever, its ratio and the slope of that, reach, divisor, and closure (kernel)."""
     line, o = pivot_from_pin(placement, on, pivot, True), number_or_zero(offset)
     (a, slack, ground, rest), near_by, far_off = line[:4], line.near_by, line.far_off
     d, square, over = line.d, line.square, 1.0 / line.square
@@ -236,7 +236,7 @@ def slotted(placement, on, pivot, offset, assembly):
 
 
 def has_small_clearance(throw, offset, size):
-    """Whether a length, or the distance of a pivot, more or less an offset, is nearly the radius of a pin of the crank.
+    """Whether a length or pivot distance, plus or minus an offset, is nearly the radius of a pin of the crank.
 
     In any design of a batch.
     """
@@ -273,7 +273,7 @@ def across(swing, guide):
 
 
 def departure(placement, drawn_in, joint, direction, reach, short):
-    """Second derivative of that coordinate plus itself; None where both are large.
+    """Second derivative of `elongation`'s coordinate plus the coordinate; None where both are large.
 
     The share of the joint is 0 for a pin of the crank, and known for a roller on a cam; the reach loses `drawn_in` in
     its second derivative.
@@ -329,7 +329,7 @@ def toggle_axis(group, guide, throw):
 
 
 def straighten_rocker(direction, coupler, joint, coupler_length, rocker_length, pivot, toggle):
-    """Direction of the rocker, with its component along the axis `toggle` computed through the coupler (kernel)."""
+    """Direction of the rocker, whose component along the axis `toggle` follows from the coupler (kernel)."""
     axis = AXES.index(toggle)
     along, lean = coupler[axis], coupler[1 - axis]
     way = sign(along)

@@ -75,17 +75,17 @@ def resolve(motion, load, pressure_angle):
 class PlanetaryCrank(checks.Checked, Group):
     """Planet on the crank pin `on` that rolls in a fixed ring of twice its size.
 
-    If `radius` is the length of the arm, its pin runs on a line through O, with a stroke of four arms. Hang a slider on
-    the pin by a `YokeGroup` whose slot stands across the line: then the guide carries only loads across.
+    If `radius` equals the length of the arm, its pin runs on a line through O, with a stroke of four arms. Attach a
+    slider to the pin by a `YokeGroup` with its slot across the line; then the guide carries only transverse loads.
 
     Parameters
     ----------
     radius : float or array
-        Distance of the pin from the planet's axis, m: that of its pitch circle if it is the crank's length.
+        Distance of the pin from the planet's axis, m: equal to the crank length, it is the radius of the pitch circle.
     line_angle : float or array
         Direction of the pin's line, or of the long axis of its ellipse, from +x, rad.
     pressure_angle : float or array
-        Of the teeth, rad, below pi/2; 20 degrees by default.
+        Pressure angle of the teeth, rad, below pi/2; 20 degrees by default.
     on, pin : str
         Names of the crank pin, and of the pin that it adds.
     planet : Link
@@ -93,12 +93,12 @@ class PlanetaryCrank(checks.Checked, Group):
     label : str
         Appended to the names of links and forces of a second planet in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
     ParameterError
-        It does not hang on a pin of the crank, or a value no machine can have.
+        The planet is not on a pin of the crank, or a value is impossible.
 
     Notes
     -----
@@ -166,7 +166,7 @@ class PlanetaryCrank(checks.Checked, Group):
         return self
 
     def _require_arm(self, throw):
-        where = f"it hangs on {self.on!r}, but a planet needs a pin of the crank, its arm"
+        where = f"it is attached to {self.on!r}, but a planet needs a pin of the crank, its arm"
         checks.require(self.RULES.owner, where if throw is None else None)
 
     def place(self, placement):

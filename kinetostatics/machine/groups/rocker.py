@@ -211,21 +211,21 @@ class RockerGroup(Branch, RRRGroup):
         another pin of the crank, as for `four_bar`, or on the pin of another rocker, which counts as its crank.
     coupler, rocker : Link
     on, pin, pivot_name : str
-        Names of the joint it hangs on and of the joints it adds.
+        Names of the joint it is attached to and of the joints it adds.
     label : str
         Appended to the names of links and forces of a second rocker group in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
     ParameterError
-        A value no machine can have; the mechanism raises it where the group cannot pass change points that way.
+        A value is impossible; the mechanism raises it where the group cannot pass change points that way.
 
     Notes
     -----
-    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on rocker; `pivot_name`,
-    ground on rocker.
+    Reactions, vectors in N: `on` on the coupler, from the link that carries the joint; `pin`, coupler on rocker;
+    `pivot_name`, ground on rocker.
 
     Examples
     --------
@@ -362,7 +362,7 @@ class Dyad(RRRGroup):
     length1, length2 : float or array
         From the first and from the second joint to the pin, m.
     on : (str, str)
-        Names of the joints it hangs on, which may both move.
+        Names of the joints it is attached to; both may move.
     pin : str
         Name of the joint it adds.
     assembly : +1 or -1
@@ -372,12 +372,12 @@ class Dyad(RRRGroup):
     label : str
         Appended to the names of links and forces of a second dyad in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
     ParameterError
-        A value no machine can have, or the same joint twice.
+        A value is impossible, or the same joint twice.
 
     Notes
     -----

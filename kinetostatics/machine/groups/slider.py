@@ -1,10 +1,10 @@
 """Slider group (RRP): coupler from a pin to a slider on a straight guide, in either assembly.
 
 With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A reaches
-d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it; no angle is ever formed, so nothing happens at the
-dead centres, whatever the inclination of the guide.
+d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it. No angle is formed, so dead centres need no special
+treatment at any inclination of the guide.
 
-Where l = r + |e| on a crank r, the coupler comes to stand across the guide: on a chosen side the slider turns back
+Where l = r + |e| on a crank r, the coupler comes to stand across the guide. On a chosen side the slider turns back
 there, the words "open" and "crossed" let it run on (`change_points`).
 """
 
@@ -42,8 +42,8 @@ TERMS = {
     "second": ("p''", "second derivative by phi of that"),
     "across": ("d", "from the inner joint across to the guide"),
     "along": ("w", "reach of the coupler along the guide"),
-    "drawn_in": ("z", "what the coupler's turning takes from the second derivative of that reach"),
-    "_from.short": ("f", "by how much the coupler's reach along the guide falls short of its length"),
+    "drawn_in": ("z", "part of the second derivative of that reach from the coupler's rotation"),
+    "_from.short": ("f", "coupler's length less its reach along the guide"),
     "resolve.on_slider": ("Q", "force on the slider along its guide (x) and across it (y)"),
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
@@ -54,8 +54,8 @@ TERMS = {
 class SliderMotion(NamedTuple):
     """A placed slider group; `closure` is cosine squared, `travel` the slider's coordinate along the guide as joint.
 
-    `divisor` is the cosine to divide by, as `change_points.divide` takes it; `closure` leaves out change points.
-    `drawn_in` is what the coupler's turning takes from the second derivative of the travel; None if it is unknown.
+    `divisor` is the cosine as a divisor, as `change_points.divide` takes it; `closure` leaves out change points.
+    `drawn_in` is the part of the second derivative of the travel from the coupler's rotation; None if unknown.
     """
 
     coupler: LinkMotion
@@ -71,7 +71,7 @@ class SliderMotion(NamedTuple):
 def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
     """Coupler and slider for a given inner joint (kernel); a guide of None is +x, without offset.
 
-    A joint on a pin of the crank may have `reached`, by a kernel for that; a joint that a link swings has its `swing`.
+    `reached` comes from a special kernel for a pin of the crank; `swing` is given for a joint on a swinging link.
     """
     position, first, second = (rotate_back(vector_or_zero(part), guide.direction) for part in joint)
     across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
@@ -129,21 +129,22 @@ class SliderGroup(checks.Checked, Branch, Group):
         crank, as for `crank_slider`.
     coupler, slider : Link
     on, pin : str
-        Names of the joint it hangs on and of the joint it adds.
+        Names of the joint it is attached to and of the joint it adds.
     label : str
         Appended to the names of links and forces of a second slider group in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
     ParameterError
-        A value no machine can have; the mechanism raises it where the group cannot pass change points that way.
+        A value is impossible; the mechanism raises it where the group cannot pass change points that way.
 
     Notes
     -----
-    Reactions, vectors in N: `on` on the coupler, from what carries the joint; `pin`, coupler on slider; "guide", ground
-    on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about `pin`.
+    Reactions, vectors in N: `on` on the coupler, from the link that carries the joint; `pin`, coupler on slider;
+    "guide", ground on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about
+    `pin`.
 
     Examples
     --------
@@ -248,14 +249,14 @@ class SliderGroup(checks.Checked, Branch, Group):
         return near_dead_centre.elongation(placement, *self._from(free_position, placement))
 
     def departure(self, placement, position):
-        """Second derivative of that coordinate plus its elongation from a position, m; None where both are large."""
+        """Second derivative of the coordinate plus its elongation from a position, m; None where both are large."""
         drawn_in = self.placed(placement).drawn_in
         if self.passage or drawn_in is None:
             return None
         return near_dead_centre.departure(placement, drawn_in, *self._from(position, placement))
 
     def outward(self, placement, position):
-        """That elongation, or its opposite, as a length of the design and some more, m; None if it is not known so."""
+        """That elongation, or its opposite, as a length of the design and a remainder, m; None if not known so."""
         return near_dead_centre.outward(placement, *self._from(position, placement))
 
     def _from(self, position, placement):

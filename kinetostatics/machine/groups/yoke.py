@@ -59,6 +59,8 @@ def place(joint, guide, slot_angle):
     slider = slider_motion(joint.position, (back, -rise), travel, guide)
     return YokeMotion(LinkMotion(joint, rotate(slot, guide.direction), None, None), slider, travel, rise, slot)
 
+    """Block and slider for a given joint (kernel); a guide direction of None is +x, an offset of None is zero."""
+
 
 def resolve(motion, guide, block_load, slider_load, push):
     """Reactions, vectors at `on` and of the guide; scalars, force and moment of slot and of guide (kernel).
@@ -91,7 +93,7 @@ class YokeGroup(checks.Checked, Group):
     slot_angle : float or array
         From the guide's direction, counter-clockwise, rad; not 0 or pi.
     on, pin : str
-        Names of the joint it hangs on and of the joint it adds.
+        Names of the joint it is attached to and of the joint it adds.
     slider : Link
         Reference joint `pin`, along the guide.
     block : Link
@@ -99,18 +101,18 @@ class YokeGroup(checks.Checked, Group):
     label : str
         Appended to the names of links and forces of a second yoke group in one mechanism.
     plane : float or array, optional
-        Position along the crankshaft, m; by default that of what the group hangs on (`machine.planes`).
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
     ParameterError
-        The slot is parallel to the guide, or a value no machine can have.
+        The slot is parallel to the guide, or a value is impossible.
 
     Notes
     -----
-    Reactions: `on` (N) on the block, from what carries the joint; "slot_force" (N), slider on block along the slot's
-    left normal, and "slot_moment" (N m) about `on`; "guide_force" (N), ground on slider along the guide's left normal,
-    and "guide_moment" (N m) about `pin`; "guide", the same force as a vector.
+    Reactions: `on` (N) on the block, from the link that carries the joint; "slot_force" (N), slider on
+    block along the slot's left normal, and "slot_moment" (N m) about `on`; "guide_force" (N), ground on slider along
+    the guide's left normal, and "guide_moment" (N m) about `pin`; "guide", the same force as a vector.
 
     Examples
     --------

@@ -24,7 +24,7 @@ GAUSS_POINTS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
 GAUSS_WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 """Points and weights of Gauss quadrature from 0 to 1."""
 MAX_JUMP_SHARE = 0.1
-"""Largest share of these parts in which a derivative may jump."""
+"""Largest fraction of these parts in which a derivative may jump."""
 KNOT_OFFSET = 1e-7
 """Distance from a knot, rad, at which jumps are measured."""
 MIN_JUMP = 1e-4
@@ -41,8 +41,8 @@ class Breakpoint(NamedTuple):
 class Law:
     """Position over the whole turn, m, with three derivatives by the crank angle: ``law(phi)``.
 
-    Any function that returns the four is a law; an attribute `knots` gives the angles at which its jerk or acceleration
-    jumps.
+    Any function that returns these four arrays is a law; an attribute `knots` gives the angles at which its jerk or
+    acceleration jumps.
 
     Examples
     --------
@@ -58,7 +58,7 @@ class Law:
     knots: Any = ()
     """Crank angles at which the jerk may jump, rad."""
     joints: Any = ()
-    """Those of the knots at which segments join, narrow ones perhaps, that may be smooth there, rad."""
+    """Knots at which segments join, possibly narrow and smooth there, rad."""
 
     def __call__(self, phi) -> Motion:
         raise TypeError(f"{type(self).__name__} must define __call__(phi) -> position, velocity, acceleration, jerk")
@@ -100,7 +100,7 @@ class ShiftedLaw(Law):
 
 
 def turn_angles(knots, count):
-    """Even crank angles over the turn, so many, and `PLACES` between neighbouring knots, rising, rad."""
+    """`count` even crank angles over the turn, and `PLACES` between neighbouring knots, rising, rad."""
     even, knots = np.linspace(0.0, TURN, count, endpoint=False), np.unique(np.mod(knots, TURN))
     between = knots[:, None] + np.diff(knots, append=knots[:1] + TURN)[:, None] * PLACES
     return np.unique(np.append(even, np.mod(between, TURN)))

@@ -2,7 +2,7 @@
 
 harmonic, cycloidal, polynomial,
 modified_sine, modified_trapezoid,
-dwell                             segments of a turn, for `joined`; alone they are functions of their own angle
+dwell                             segments of a turn, for `joined`; each is a function of its own angle
 cosine, joined, table             laws of the whole turn: law(phi) -> position, velocity, acceleration, jerk by phi
 
 ``cams.from_law`` makes the cam whose slider follows a law of the whole turn.
@@ -28,7 +28,7 @@ POLYNOMIALS = {"3-4-5": (3, 4, 5), "4-5-6-7": (4, 5, 6, 7)}
 
 @dataclass(frozen=True, eq=False)
 class Segment:
-    """Part of a turn: the position goes from `start` to `end`, m, over `angle`, rad, by a standard curve.
+    """Part of a turn: the position moves from `start` to `end`, m, over `angle`, rad, by a standard curve.
 
     Examples
     --------
@@ -66,7 +66,7 @@ class Segment:
         return self.at(phi)
 
     def at(self, phi):
-        """The same, unchecked."""
+        """Motion as of `__call__`, unchecked."""
         stroke, share = self.end - self.start, 1.0 / self.angle
         found = self.rise(np.clip(phi * share, 0.0, 1.0))
         position = self.start + stroke * found.position
@@ -89,7 +89,7 @@ def harmonic(start, end, angle):
     start, end : float
         Positions, m.
     angle : float
-        Crank angle that it takes, rad.
+        Crank angle of the segment, rad.
 
     Returns
     -------
@@ -155,8 +155,8 @@ def polynomial(start, end, angle, powers="3-4-5"):
     start, end, angle : float
         As for `harmonic`.
     powers : "3-4-5", "4-5-6-7" or sequence of int
-        Two powers or more, from 2 to 15, rising. The lowest power n gives n - 1 zero derivatives at the start, and k
-        powers give k - 1 at the end.
+        Two powers or more, from 2 to 15, rising. With the lowest power n, n - 1 derivatives are zero at the start; with
+        k powers, k - 1 derivatives are zero at the end.
 
     Returns
     -------
@@ -307,7 +307,7 @@ def joined(*segments, smooth="acceleration"):
     Parameters
     ----------
     segments : Segment
-        Made by `cycloidal`, `dwell` and the others; together they take a turn.
+        From `cycloidal`, `dwell` and the others; their angles add up to one turn.
     smooth : "acceleration" or "velocity"
         Highest derivative that must not jump between segments. "velocity" allows jumps of the acceleration, and with it
         of the forces.

@@ -4,10 +4,10 @@ A shaft at the ratio n turns by n phi + phase. With the unbalance U, the unit ve
 J about the axis, the pull of gravity g, crank speed omega and acceleration alpha, and left(u) a quarter turn ahead of u
 
     inertia force on the frame       F = U (n^2 omega^2 u - n alpha left(u))
-    moment about its own axis        tau = U u x g - J n alpha
+    moment about its axis        tau = U u x g - J n alpha
     torque on the crank              n tau,    which adds J n^2 to the reduced inertia
 
-Forces of the teeth between shaft and crank are not modelled, for they need pitch radii. Their couple on the frame is
+Forces of the teeth between shaft and crank are not modelled because they need pitch radii. Their couple on the frame is
 known, (1 - n) tau on the bearings of both.
 Sources: F. W. Lanchester, *Engine balancing*, 1914; J. P. den Hartog, *Mechanical Vibrations*, 1956, chapter 5.
 """
@@ -29,10 +29,10 @@ from .slider import spring_masses
 from .table_pieces import TURN
 
 MAX_DENOMINATOR = 24
-"""Largest denominator of a ratio: so many turns of the crank the machine takes to repeat."""
+"""Largest denominator of a ratio: the machine repeats after this number of turns of the crank."""
 MAX_RATIO = 100.0
 RATIO_TOLERANCE = 1e-12
-"""Relative rounding by which a ratio may miss its fraction."""
+"""Largest relative difference of a ratio from its fraction."""
 
 
 def _fraction(ratio):
@@ -68,7 +68,7 @@ class RatioRule:
 class BalanceShaft(Load):
     """An unbalanced shaft geared to the crank: its inertia force and weight on the frame, its torque on the crank.
 
-    It changes no motion. Forces of teeth are not modelled, for the pitch radii are not known.
+    It does not change the motion. Tooth forces are not modelled, because the pitch radii are unknown.
 
     Parameters
     ----------
@@ -87,16 +87,17 @@ class BalanceShaft(Load):
         Of the whole shaft with its unbalance, kg: its weight on the bearing. Without it the bearing carries the inertia
         force alone.
     plane : float or array
-        Position along the crankshaft, m; it matters to the rocking moment alone.
+        Position along the crankshaft, m; it affects only the rocking moment.
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or negative where none can be; the ratio is 0, above 100, or no such fraction.
+        A value is not a finite number, or is negative without meaning; the ratio is 0, above 100, or not such a
+        fraction.
 
     Examples
     --------
-    A shaft that turns against a crank of the same unbalance: what is left is a force along x.
+    A shaft that turns against a crank of the same unbalance: the remainder is a force along x.
 
     >>> import kinetostatics as ks
     >>> crank = ks.crank_slider(0.05, 0.2, crank=ks.Link(2.0, 0.05))  # 0.1 kg m
@@ -128,12 +129,12 @@ class BalanceShaft(Load):
 
     @property
     def period(self):
-        """Turns of the crank after which the shaft stands as before, times 2 pi, rad."""
+        """Crank angle after which the shaft has the same position again, rad."""
         return TURN * _fraction(self.ratio).denominator
 
     @property
     def crank_inertia(self):
-        """Its inertia reduced to the crank, kg m2; None without."""
+        """Its inertia reduced to the crank, kg m2; None if it is zero."""
         return product(self.ratio * self.ratio, present(self.inertia))
 
     def wrenches(self, motion):
@@ -182,7 +183,7 @@ class BalanceShaft(Load):
 
 
 def balance_shafts(loads):
-    """Loads with masses of their own that turn with the crank: see `Load`."""
+    """Loads whose own masses turn with the crank: see `Load`."""
     return [item for item in loads if hasattr(item, "shaking")]
 
 

@@ -5,12 +5,12 @@ A the piston area and d = +1 or -1 the direction in which the gas pushes,
 
     V = V0 + d A (s - s0)        force = d A (p - p_a)        p = p0 exp(n L),  L = log(V0 / V)
 
-since a piston that moves the way the gas pushes gives it room; p_a is the pressure on the other side of the piston.
-Its work is the integral of the force: the potential energy, zero at s0, is
+for a piston that moves in the direction of the gas force enlarges the volume; p_a is the pressure on the other side of
+the piston. Its work is the integral of the force: the potential energy, zero at s0, is
 
     p0 V0 ((V0/V)^(n-1) - 1) / (n - 1) + p_a (V - V0)  =  p0 V0 L integral of exp((n-1) L t) dt + p_a (V - V0)
 
-The integral from 0 to 1 by Gauss's rule has no limit to take at n = 1, isothermal, where it is 1.
+The integral from 0 to 1 by Gauss's rule has no singular case at n = 1 (isothermal), where it is 1.
 """
 
 from dataclasses import dataclass, field
@@ -47,9 +47,9 @@ class GasSpring(SliderLoad):
     Parameters
     ----------
     area : float or array
-        Of the piston, m2.
+        Piston area, m2.
     volume : float or array
-        Of the gas where the slider is at `at`, dead volume included, m3.
+        Gas volume at the slider position `at`, including dead volume, m3.
     pressure : float or array
         Absolute pressure of the gas there, Pa.
     at : float or array
@@ -61,13 +61,13 @@ class GasSpring(SliderLoad):
     ambient : float or array
         Absolute pressure on the other side of the piston, Pa.
     on : str
-        Slider that it acts on.
+        Slider on which it acts.
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or out of its range; when a scene is made: there is no such slider; when it is
-        solved: the slider goes on where no volume is left, with the crank angles.
+        A value is not a finite number, or out of its range; when a scene is made, the slider is unknown; when it is
+        solved: no gas volume is left at some crank angles, which the message lists.
 
     Warns
     -----
@@ -102,7 +102,7 @@ class GasSpring(SliderLoad):
     PATH, LENGTHS, REFUSES = "gas_spring", ("at",), True
 
     def _exponent_problems(self):
-        """Sentence if the exponent is that of no gas."""
+        """Sentence if no gas has the exponent."""
         if checks.has_known_values(self.exponent) and np.any(np.asarray(self.exponent) > MAX_EXPONENT):
             yield f"exponent must be at most {MAX_EXPONENT:g}, got {checks.shown(self.exponent)}"
 
@@ -150,7 +150,7 @@ class GasSpring(SliderLoad):
         return volume
 
     def refusals(self, motion):
-        """Sentence on the crank angles at which no volume is left."""
+        """Sentence on the crank angles without gas volume."""
         volume = self._volume(motion)
         if not isinstance(volume, float | np.ndarray) or not checks.has_known_values(volume):
             return

@@ -5,31 +5,31 @@ A load is a frozen dataclass derived from `Load`. It acts in one of two ways, co
     wrenches(motion)    pairs of a link's name, or the frame's, and the `Wrench` on it about its reference joint
     push(motion)        force on the slider `on` along its guide, N
 
-A spring along a guide also gives ``spring_rate(motion)``, N/m; its push is minus that rate times the elongation from
-`free_position`. ``parted_rate(motion)`` may split the rate into a constant and a rest. Both keep digits where spring
-and inertia nearly cancel.
+A spring along a guide also has ``spring_rate(motion)``, N/m; its push is minus that rate times the elongation from
+`free_position`. ``parted_rate(motion)`` may split the rate into a constant and a remainder. Both save digits where
+spring force and inertia nearly cancel.
 
     VALUE, UNIT             field that may hold an array over the crank angles, a `Table` or a function of the motion
                             instead of a number, and its unit; `evaluate_load` replaces it by values first
     LENGTHS                 fields that hold lengths and angles of the geometry
-    potential(motion)       potential energy, J, where there is one; DISSIPATES marks dampers
+    potential(motion)       potential energy, J, if it has one; DISSIPATES marks dampers
     misplaced(mechanism)    problems of the joints and links it names
-    refusals(motion)        sentences on crank angles at which it has no value; REFUSES says that there may be any
+    refusals(motion)        sentences on crank angles at which it has no value; REFUSES: it may have some
     signs(motion)           symbols by which it is drawn
     shaking(motion)         inertia force on the frame, a `Support`, of its masses that turn with the crank; then also
                             ``crank_inertia``, added to the crank, kg m2 or None, and ``plane`` along the crankshaft, m
-    rests_on_frame(mechanism)  whether the frame takes a force or couple of it
-    support(motion)         that force and couple, a `Support`; by default its wrenches on the frame, about O
+    rests_on_frame(mechanism)  whether it puts a force or couple on the frame
+    support(motion)         its force and couple on the frame, a `Support`; by default its wrenches about O
 
 A load or its value (a `Table`, a function of the motion) may declare kinks and jumps:
 
     kinks(motion)               crank angles of kinks, (K,), and of jumps, (J,), rad, in its own `period` (one turn by
-                                default), whatever the crank angles of the motion
+                                default), for any crank angles of the motion
     bends(motion, straight),    the same for each of many designs, without kinks smaller than `straight` times its
     is_bent(straight)           largest value, as `Table` does
 
-A load that jumps where a motion changes its sense has these in its `jumps`, a `Jumps`. STROKE marks a load that takes
-the dead centres of its slider; a program gives it their coordinates in its field `ends`.
+A load that jumps where a motion changes its sense has a `Jumps` in its field `jumps`. STROKE marks a load that uses
+the dead centres of its slider; a program sets their coordinates in its field `ends`.
 
 Functions without declared kinks are sampled at the resolution of the scene; narrower features may be missed.
 """
@@ -54,7 +54,7 @@ from .table_pieces import TURN
 
 
 class Symbol(NamedTuple):
-    """Symbol by which a load is drawn in the poses of a motion.
+    """Symbol of a load in drawings, in the poses of a motion.
 
     Attributes
     ----------
@@ -130,11 +130,11 @@ class Load(checks.Checked, Batched):
         return ()
 
     def rests_on_frame(self, mechanism) -> bool:
-        """Whether the frame takes a force or couple of it: by default if it gives wrenches."""
+        """Whether it puts a force or couple on the frame: by default if it has wrenches."""
         return hasattr(self, "wrenches")
 
     def support(self: Any, motion) -> Support:
-        """What it puts on the frame."""
+        """Its force and couple on the frame."""
         on_frame = (wrench for link, wrench in self.wrenches(motion) if link == FRAME)
         total = reduce(Wrench.plus, on_frame, Wrench(None, None))
         return Support(total.force, None, total.moment)
@@ -216,7 +216,7 @@ def value_rule(unit):
 
 
 def kink_sources(loads):
-    """Loads, values and jumps of loads that declare kinks, a list."""
+    """List of loads, values and jumps that declare kinks."""
     parts = (part for item in loads for part in (item, value_of(item), getattr(item, "jumps", None)))
     return [part for part in parts if hasattr(part, "kinks")]
 
@@ -252,7 +252,7 @@ def has_significant_kinks(part, straight):
 def significant_kinks(part, motion, straight):
     """Crank angles of the kinks larger than `straight` times the largest value of a part, rad, (1 or designs, K).
 
-    Rows end with NaN where a design has fewer. Also which of them are jumps, (K,), and the largest kink left out,
+    Rows end with NaN where a design has fewer. Also a mask of the jumps, (K,), and the largest kink left out,
     relative to the largest value.
     """
     if hasattr(part, "bends"):

@@ -134,18 +134,18 @@ def place_text(place):
 
 
 MEETING_DISTANCE = 2.0**-50
-"""Largest distance of two points that meet, relative to their coordinates and the lengths: rounding."""
+"""Largest distance of two coincident points, relative to their coordinates and the lengths: rounding."""
 MEETING_SQUARE, MEETING_LOOKAHEAD = (8.0 * MEETING_DISTANCE) ** 2, 2.0**23
-"""Square of the relative distance of two points below which a damper follows their motion, and how many times that
-distance it looks ahead."""
+"""Square of the relative distance of two points below which a damper follows their motion, and its look-ahead,
+as a multiple of this distance."""
 MIN_SQUARE = 1e-280
 """Square of a distance, m2, that guards divisors."""
 TERMS = {
     "d": ("d", "from the second point to the first"),
     "distance": ("D", "distance of both points"),
     "near": ("N", "square of a distance at which both points would count as meeting"),
-    "share": ("h", "share of their motion in their direction, nothing unless they meet"),
-    "shortening": ("z", "rate at which the points part, over their distance"),
+    "share": ("h", "share of their motion in their direction, zero unless they meet"),
+    "shortening": ("z", "rate of separation of the points over their distance"),
 }
 """Symbol and meaning of lines of the kernels in hand calculations."""
 
@@ -190,18 +190,18 @@ class Force(PlacedLoad):
     value : float, array, Table or function
         N; an array has one value for each crank angle, a function takes the `Motion` and returns such values.
     at : point
-        Joint such as "B", a place on a link, ("coupler", along, across), in m and axes of mass centres, or a fixed
-        point (x, y), where the frame takes the force. A joint stands for the link that owns it (``mechanism.joints``),
-        a fixed pivot for the link that turns about it.
+        Joint such as "B", a place on a link, ("coupler", along, across), in m and in the axes of mass centres, or a
+        fixed point (x, y), where the frame takes the force. A joint stands for the link that owns it
+        (``mechanism.joints``), a fixed pivot for the link that turns about it.
     direction : float
         Angle of the force, rad, counter-clockwise from +x, or from the axis of the link `along`.
     along : str, optional
-        Link that the direction turns with.
+        Link with which the direction turns.
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or `at` is not a point; when a scene is made: there is no such joint or link.
+        A value is not a finite number, or `at` is not a point; when a scene is made, a joint or link is unknown.
 
     Examples
     --------
@@ -242,7 +242,7 @@ class Force(PlacedLoad):
         yield self.at, (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
 
     def rests_on_frame(self, mechanism):
-        """False: at a fixed point it acts on the frame from outside, and is no force of the machine."""
+        """False: at a fixed point it is an external force on the frame, not a force of the machine."""
         return False
 
     def _axis(self, motion):

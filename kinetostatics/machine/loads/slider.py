@@ -11,9 +11,9 @@ of gravity along the guide, the spring pushes along the guide
 
     the slider by  -c e - m a / 3 + m g_u / 2        the frame by  c e - m a / 6 + m g_u / 2
 
-Together that is minus the change of its momentum, m a / 2, and its weight. At harmonic n of a crank speed w the end of
-a spring with waves has the stiffness c z cot z, z = n w sqrt(m / c) (`surge`), of which c - m (n w)^2 / 3 is the
-beginning.
+The sum is minus the change of its momentum, m a / 2, plus its weight. At harmonic n of a crank speed w the end of a
+spring with waves has the stiffness c z cot z, z = n w sqrt(m / c) (`surge`); c - m (n w)^2 / 3 is the start of its
+series.
 """
 
 from collections.abc import Iterable
@@ -42,11 +42,11 @@ from .table import Table
 from .table_pieces import TURN, WholeTurns
 
 REACTIONS = ("outside", "frame")
-"""What may take the force opposite to a process force."""
+"""Bodies that may take the force opposite to a process force."""
 
 
 class SliderLoad(Load):
-    """A load on the slider `on` along its guide, which the frame takes on the same line."""
+    """A load on the slider `on` along its guide; the frame takes the opposite force on the same line."""
 
     on: str
 
@@ -86,12 +86,12 @@ class Spring(SliderLoad):
     free_position : float or array
         Coordinate of B along the guide (B . guide direction) at which the spring is free, m.
     on : str
-        Slider that it acts on.
+        Slider on which it acts.
     cubic : float or array
         N/m3, factor of the cube of the elongation in the force; negative for a softening spring.
     mass : float or array
         kg, of all springs together. Each is uniform, has its foot on the frame, and stretches evenly, also with a
-        cubic term. Waves in the coils are neglected; a `HintWarning` says where they count
+        cubic term. Waves in the coils are neglected; a `HintWarning` names the scenes in which they matter
         (`ks.design.spring_surge`). A third of the mass moves with the slider in energies, reduced inertia, reactions
         and torque; half of it counts in the shaking force. Half of its weight acts on the slider, half on the foot.
 
@@ -140,8 +140,8 @@ class Spring(SliderLoad):
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
         A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included: that is
-        z tan z = m / M, which has one root below pi / 2 for every m and M. A scene neglects the waves, so in
-        it the end of the spring is stiffer by c z^4 / 45 and more.
+        z tan z = m / M, with one root below pi / 2 for every m and M. A scene neglects the waves, so in
+        a scene the end of the spring is stiffer by c z^4 / 45 and more.
 
         Parameters
         ----------
@@ -154,7 +154,7 @@ class Spring(SliderLoad):
         on : str
             The slider.
         spring_mass : float
-            Of all springs together, kg.
+            Mass of all springs together, kg.
 
         Returns
         -------
@@ -163,7 +163,7 @@ class Spring(SliderLoad):
         Raises
         ------
         ParameterError
-            The mass is negative, a value not finite, or mass or speed 0: a spring of no stiffness balances nothing.
+            The mass is negative, a value not finite, or mass or speed 0: a spring without stiffness has no effect.
 
         Examples
         --------
@@ -184,7 +184,7 @@ class Spring(SliderLoad):
         if problem := " and ".join(f"the {name.replace('_', ' ')} is 0" for name in zero):
             raise ParameterError(
                 f"balancing spring: {problem}, so there is no inertia force to balance and the stiffness would be 0; "
-                "give the values that it is to balance, or the stiffness itself"
+                "give the mass and speed to balance, or the stiffness itself"
             )
         stiffness = mass * crank_speed * crank_speed
         if present(own) is not None:
@@ -203,12 +203,12 @@ class Spring(SliderLoad):
         return self.stiffness + self.cubic * elongation * elongation
 
     def mean_rate(self, position, weights=None):
-        """Mean stiffness of small oscillations over the slider's coordinates in a period, N/m; of each design."""
+        """Mean stiffness of small oscillations over the slider's coordinates in a period, N/m, by design."""
         rate = self.stiffness + 3.0 * self.cubic * (position - self.free_position) ** 2
         return np.mean(rate, axis=-1, keepdims=np.ndim(rate) > 1) if weights is None else rate @ weights
 
     def parted_rate(self, motion):
-        """The same as a part that is constant over the crank angle, where the group knows one, and a rest or None."""
+        """Stiffness as a part that is constant over the crank angle, if the group has one, and a rest or None."""
         if present(self.cubic) is None:
             return self.stiffness, None
         found = motion.outward(self)
@@ -230,7 +230,7 @@ class Spring(SliderLoad):
         return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
 
     def support(self, motion):
-        """Force at the feet: opposite of the elastic force, less inertia, with weight of springs that have mass."""
+        """Force at the feet: the opposite of the elastic force, less inertia, plus weight of springs with mass."""
         force, point, _ = super().support(motion)
         mass = present(self.mass)
         if mass is not None:
@@ -253,7 +253,7 @@ class SpringMass(NamedTuple):
 
 
 def spring_masses(loads: Iterable[Any]) -> dict[str, SpringMass]:
-    """Mass of all springs by slider; without sliders whose springs have none."""
+    """Mass of all springs by slider, for sliders whose springs have mass."""
     found: dict[str, Any] = {}
     for item in loads:
         mass = present(item.mass) if isinstance(item, Spring) else None
@@ -263,7 +263,7 @@ def spring_masses(loads: Iterable[Any]) -> dict[str, SpringMass]:
 
 
 class WorkForce(SliderLoad):
-    """Force of the work that a slider does; the frame, or something outside, takes the opposite force."""
+    """Process force on a slider; the frame or an external body takes the opposite force."""
 
     reaction: str
 
@@ -285,23 +285,23 @@ class ProcessForce(WorkForce):
     ----------
     force : float, array, Table or function
         N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function takes
-        the `Motion` and returns values that depend, angle by angle, on crank angle, position or velocity. It must be
-        pure: without counters, random numbers or clocks, because engines call it as often as they need. The compiled
-        engine compiles its constants, so other constants are compiled anew.
+        the `Motion` and returns values that depend, angle by angle, on crank angle, position or velocity. The function
+        must be pure, without counters, random numbers or clocks, because engines call it any number of times. The
+        compiled engine compiles its constants; other constants need a new compilation.
     on : str
-        Slider that it acts on.
+        Slider on which it acts.
     period : float, optional
         Period of the force, rad: 4 pi for a four-stroke engine. By default the period of its `Table`, else 2 pi.
     reaction : "outside" or "frame"
-        What takes the opposite force: something outside, as the ground that a mower's crop stands in, or the machine's
-        own frame, as that of a saw, on whose rollers the log rests, or of an engine, whose gas presses on its cylinder
-        too. It matters to the forces on the frame (`Solution.ground`) alone.
+        Body that takes the opposite force. "outside": an external body, such as the ground in which a mower's crop
+        stands. "frame": the frame of the machine, such as a saw whose rollers carry the log, or an engine whose
+        cylinder takes the gas pressure. It affects only the forces on the frame (`Solution.ground`).
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or the period not a whole number of turns, or the reaction another; when a
-        scene is made: there is no such slider.
+        A value is not a finite number, or the period not a whole number of turns, or the reaction is neither of these;
+        when a scene is made, the slider is unknown.
 
     Examples
     --------

@@ -16,15 +16,15 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 MIN_RATIO = 5.0
-"""Surge ratio below which a spring that stretches evenly is too far from one with waves.
+"""Surge ratio below which even stretching is a poor model of a spring with waves.
 
-There the stiffness of the end, c - m s^2 / 3 without waves, is off by c z^4 / 45 and more, 0.36 % of c."""
+There the stiffness of the end, c - m s^2 / 3 without waves, is wrong by c z^4 / 45 and more, 0.36 % of c."""
 HARMONIC_SHARE = 0.05
-"""Share of the largest acceleration of a harmonic from which on a harmonic of the slider's travel counts."""
+"""Least acceleration of a harmonic of the slider's travel that counts, relative to the largest one."""
 SAMPLES = 256
 """Crank angles a turn for these harmonics."""
 NEWTON_STEPS = 8
-"""Steps for the root z of z tan z = m / M, which converge for every ratio."""
+"""Iteration steps for the root z of z tan z = m / M; they converge for every ratio."""
 
 
 def surge_frequency(stiffness, mass):
@@ -33,7 +33,7 @@ def surge_frequency(stiffness, mass):
 
 
 def end_stiffness(stiffness, mass, frequency):
-    """Stiffness of the moving end at a frequency, rad/s: c z cot z, N/m; negative where inertia prevails."""
+    """Stiffness of the moving end at a frequency, rad/s: c z cot z, N/m; negative where inertia dominates."""
     z = frequency * np.sqrt(mass / stiffness)
     return stiffness * z / np.tan(z)
 
@@ -51,9 +51,9 @@ _DRIVES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
 
 
 def drive_of(mechanism, slider):
-    """Highest harmonic that matters in the acceleration of a slider, in turns, and its coordinate over the period, m.
+    """Highest significant harmonic of a slider's acceleration, per turn, and its coordinate over the period, m.
 
-    None if the mechanism does not close all around, or its numbers are not known.
+    None if the mechanism does not close all around, or its numbers are unknown.
     """
     known = _DRIVES.setdefault(mechanism, {})
     if slider not in known:
@@ -78,7 +78,7 @@ def _drive_of(travel, turns):
 
 
 def balancing_stiffness(slider, spring):
-    """Stiffness whose moving end has the stiffness M w^2, N/m, from M w^2 of the slider and m w^2 of the spring."""
+    """Spring stiffness c, N/m, whose moving end has the stiffness M w^2; `slider` is M w^2, `spring` is m w^2."""
     ratio = np.where(spring == 0.0, 0.0, spring / slider)
     z = np.sqrt(ratio / (1.0 + ratio * (4.0 / np.pi**2)))
     for _ in range(NEWTON_STEPS):

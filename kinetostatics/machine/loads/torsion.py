@@ -95,21 +95,21 @@ class Torque(Couple):
         N m, counter-clockwise on the link; an array has one value for each crank angle, a function takes the `Motion`
         and returns such values.
     opposing : bool
-        Coulomb drag, as of a brake, a seal or a chain: the torque has the constant magnitude `value`, not negative, and
-        acts against the angular velocity of `on` relative to `against`. It jumps where that changes its sense. At rest
-        it opposes the motion about to begin (`sense`, or the crank acceleration); a machine at rest that the other
-        loads cannot move against it sticks (`ks.drive.coast`, `ks.drive.start`).
+        Coulomb drag, as of a brake, a seal or a chain: the torque has the constant magnitude `value`, not negative,
+        against the angular velocity of `on` relative to `against`. It jumps where that velocity changes its sign. At
+        rest it opposes the motion about to begin (`sense`, or the crank acceleration). A machine at rest sticks if the
+        other loads cannot move it (`ks.drive.coast`, `ks.drive.start`).
     on : str
-        Link that it acts on: "rocker", "coupler", "crank" ...
+        Link on which it acts: "rocker", "coupler", "crank" ...
     against : str, optional
         Link that takes the opposite torque; by default the frame.
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or an opposing one no number or negative; when a scene is made: there is no such
-        link, both are the same, or an opposing torque acts where nothing turns; when it is solved: an opposing torque
-        acts at rest, in an unknown sense.
+        A value is not a finite number, or an opposing torque is no number or negative; when a scene is made: there is
+        no such link, both are the same, or an opposing torque acts where nothing turns; when it is solved: an opposing
+        torque acts at rest, in an unknown sense.
 
     Examples
     --------
@@ -145,7 +145,7 @@ class Torque(Couple):
         return minus(None, self.value * sign(number_or_zero(self._ratio(motion.placement))) * motion.crank_sense)
 
     def misplaced(self, mechanism):
-        """Sentences as of all couples, or if an opposing torque acts where nothing turns."""
+        """Sentences as for all couples, or if an opposing torque acts on links without relative rotation."""
         problems = [*filter(None, super().misplaced(mechanism))]
         yield from problems
         if self.opposing and not problems:
@@ -187,7 +187,7 @@ class TorsionSpring(Couple):
     on, against : str
         As for `Torque`.
     moment : float or array
-        N m, a constant couple in addition, as from a long preloaded spring.
+        Additional constant couple, N m, as from a long preloaded spring.
 
     Raises
     ------
@@ -287,7 +287,7 @@ def _free_angle_advice(angle, free_angle):
     moved -= TURN * np.round(moved / TURN)
     clear = ~(np.abs(np.diff(moved)) > np.pi).any(axis=-1)
     if not clear.any():
-        return "its angles, on all arcs where the mechanism closes, leave no free angle clear of that"
+        return "its angles, on all arcs where the mechanism closes, leave no free angle without this jump"
     free = free_angle + shifts[np.argmin(np.where(clear, np.nanmax(np.abs(moved), axis=-1), np.inf))]
     return f"give a free angle nearer to it, such as {free - TURN * np.round(free / TURN):.3g} rad"
 

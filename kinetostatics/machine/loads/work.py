@@ -1,12 +1,13 @@
-"""Work of a slider on its stroke: a saw that cuts on one of its strokes, a mower's knife that cuts on both.
+"""Work of a slider on its stroke: a saw that cuts on one stroke, a mower's knife that cuts on both.
 
 A log that advances by D for each cutting stroke S leaves n saws, b wide, the volume n b H D at the height H. With the
-work K for a volume the force is F = K n b H D / S all over the stroke, as saw and log move in proportion.
+work K for a volume the force is F = K n b H D / S over the whole stroke, if saw and log move in proportion.
 
-The sections of a knife stand midway between two fingers at mid-stroke. The edge of a section, half widths w(y), meets
-that of the finger ahead, f(y), once it has gone p - w - f from the finger behind, p the pitch: from `start` at the foot
-of the edges to `end` at their tips. It is there where sin(pi (u - start) / p) sin(pi (u - end) / p) < 0, u the distance
-gone. Stalks that stand evenly between straight edges make the force constant.
+At mid-stroke the sections of a knife stand midway between two fingers. u is the distance of a section from the finger
+behind, p the pitch. The edge of a section, half widths w(y), meets the edge of the finger ahead, f(y), where
+u = p - w - f: from `start` at the foot of the edges to `end` at their tips. It cuts where
+sin(pi (u - start) / p) sin(pi (u - end) / p) < 0. Stalks at even distances between straight edges make the force
+constant.
 """
 
 import math
@@ -30,7 +31,7 @@ from .table_pieces import TURN, stops_and_crossings
 CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
 MAX_PITCHES = 1000
-"""Fingers that a section passes in a stroke, at most."""
+"""Largest number of fingers that a section passes in a stroke."""
 MILLIMETRES, MEGAPASCALS = "is it in mm?", "is it in MPa?"
 TERMS = {
     "push.far": ("s_f", "coordinate of the far dead centre"),
@@ -46,9 +47,9 @@ TERMS = {
 
 
 class StrokeForce(WorkForce):
-    """A load on the stroke of a slider, which goes to and fro once in the period of the motion.
+    """A load on the stroke of a slider that reciprocates once in the period of the motion.
 
-    `ends` are the coordinates of its far and its near dead centre from the crank, m, where they are known.
+    `ends` are the coordinates of its far and its near dead centre from the crank, m, if known.
     """
 
     ends: Any
@@ -96,20 +97,20 @@ class Sawing(StrokeForce):
     thrust : float or array
         Force of the log across the guide while it is cut, to the left of its direction, as a fraction of F.
     overhang : float or array
-        Place of the log along the guide from the slider's pin at mid-stroke, m. The log stands still, so the arm of the
-        thrust about the pin is less by what the pin has travelled from there.
+        Position of the log along the guide from the slider's pin at mid-stroke, m. The log does not move, so the arm of
+        the thrust about the pin is this distance less the travel of the pin.
     pitch : float or array, optional
-        Pitch of the teeth, m; for a resistance by the thickness of the chip alone.
+        Pitch of the teeth, m; only for a resistance by chip thickness.
     on : str
-        Slider with the saws, without dwells. Its stroke S is that of the mechanism.
+        Slider with the saws, without dwells. The mechanism gives its stroke S.
     reaction : "frame" or "outside"
-        What takes the opposite force: the frame, on whose rollers the log rests, or something outside.
+        Body that takes the opposite force: the frame, whose rollers carry the log, or an external body.
 
     Raises
     ------
     ParameterError
-        A value is no finite number, or negative (but thrust and overhang may be); a function without a pitch; when a
-        scene is made: there is no such slider; when it is solved: the slider does not go to and fro once in a turn,
+        A value is no finite number, or negative (except thrust and overhang); a function without a pitch; when a
+        scene is made: there is no such slider; when it is solved, the slider does not reciprocate once in a turn,
         dwells, or stands still in an unknown sense.
 
     Notes
@@ -142,7 +143,7 @@ class Sawing(StrokeForce):
     PATH, VALUE, UNIT = "sawing", "resistance", "Pa"
 
     def _joint_problems(self):
-        """Sentences on a resistance and a pitch that do not go together."""
+        """Sentences on an inconsistent resistance and pitch."""
         if isinstance(self.resistance, Table):
             yield "resistance must be a number or a function of the chip thickness, got a Table"
         elif callable(self.resistance) and self.pitch is None:
@@ -195,7 +196,7 @@ class Sawing(StrokeForce):
             yield self.on, Wrench(rotate((0.0, across), motion.mechanism.guides[self.on].direction), across * arm)
 
     def _across(self, motion):
-        """Thrust of the log, N; None without."""
+        """Thrust of the log, N; None if zero."""
         return None if present(self.thrust) is None else self.thrust * abs(self.push(motion))
 
     def foot(self, motion):
@@ -226,23 +227,23 @@ class Mowing(StrokeForce):
     Parameters
     ----------
     force : float or array
-        Of all sections together while they cut, N.
+        Force of all sections together while they cut, N.
     pitch : float or array
         Distance of two fingers, m. A knife with a longer stroke passes several.
     start, end : float or array
         Distances of a section from the middle of the finger that it leaves, m, between which it cuts at the next one:
         ``pitch`` less half the widths of section and finger, at the foot of their edges and at their tips.
     on : str
-        Slider that is the knife.
+        Slider that carries the knife.
     reaction : "frame" or "outside"
-        What takes the opposite force: the fingers on the frame, against which the knife presses the stalks, or the
-        ground in which they stand.
+        Body that takes the opposite force: the fingers on the frame, against which the knife presses the stalks, or
+        the ground in which the stalks stand.
 
     Raises
     ------
     ParameterError
-        The force is negative, or not ``0 <= start < end <= pitch``; when a scene is made: there is no such slider; when
-        it is solved: the slider does not go to and fro once in a turn, or stands still in an unknown sense.
+        The force is negative, or not ``0 <= start < end <= pitch``; when a scene is made, the slider is unknown; when
+        it is solved: the slider does not reciprocate once in a turn, or stands still in an unknown sense.
 
     Examples
     --------
@@ -265,7 +266,7 @@ class Mowing(StrokeForce):
     PATH = "mowing"
 
     def _joint_problems(self):
-        """Sentence unless start, end and pitch follow one another."""
+        """Sentence unless start, end and pitch rise."""
         row = (self.start, self.end, self.pitch)
         if all(map(checks.has_known_values, row)) and np.any((self.start >= self.end) | (self.end > self.pitch)):
             yield "start must be less than end, and end at most the pitch; got " + ", ".join(map(checks.shown, row))
@@ -292,7 +293,7 @@ class Mowing(StrokeForce):
         return number_or_zero(product(present(self.force), -way * cutting))
 
     def _passed(self, position, ends):
-        """Distance along the guide from where the sections stand in fingers half a pitch before mid-stroke, m."""
+        """Distance along the guide from the position of sections within fingers, half a pitch before mid-stroke, m."""
         return position - 0.5 * (ends[0] + ends[1]) + 0.5 * self.pitch
 
     def jump_angles(self, motion):

@@ -75,7 +75,7 @@ def test_motor_from_csv_converts_its_units(tmp_path):
         ("speed [rpm], torque [N]\n0, 1\n1, 0\n", 'file = "motor.csv"', '"N" does not measure the same as "N m"'),
         ("speed, torque [N m]\n0, 1\n1, 0\n", 'file = "motor.csv"', "has no unit"),
         ("speed [rpm], torque [N m]\n5, 1\n1, 0\n", 'file = "motor.csv"', "speeds must rise"),
-        ("speed [rpm], torque [N m]\n5, 1\n", 'file = "motor.csv"', "of one length, 2 at least, got 1 and 1"),
+        ("speed [rpm], torque [N m]\n5, 1\n", 'file = "motor.csv"', "have the same length, at least 2, got 1 and 1"),
         ("angle [rad], torque [N m]\n5, 1\n", 'file = "motor.csv"', "no column 'speed'"),
         (CSV, 'file = "motor.csv", torque = ["1 N m"]', "has a file and torque: give either rows here or a CSV file"),
         (CSV, 'torque = ["1 N m"]', "needs speed and torque, lists of texts, or file"),

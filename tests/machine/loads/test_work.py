@@ -387,7 +387,7 @@ def test_studies_refuse_what_they_cannot_compute():
     with pytest.raises(NotGivenError, match="no independent formula for a Sawing"):
         newton.NEWTON_METHODS[0].prepare(s, "O", 3)()
     if importlib.util.find_spec("flint"):
-        with pytest.raises(NotGivenError, match="takes plain lengths"):
+        with pytest.raises(NotGivenError, match="needs plain lengths"):
             certified(s, "balancing_torque")
 
 
