@@ -12,7 +12,7 @@ from collections import deque
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CHECKED = ("docs/notebooks.md",)
+CHECKED = ("README.md", "docs/*.md")
 """Trees that have to be clean."""
 MADE = {"_build", "generated"}
 DOCS_COPY = ROOT / "docs" / "notebooks"
@@ -53,6 +53,10 @@ PHRASES = {
 RULES = [(re.compile(rf"(?<![\w'-])(?:{pattern})", re.IGNORECASE), advice) for pattern, advice in PHRASES.items()]
 ANY = re.compile("|".join(rule.pattern for rule, _ in RULES), re.IGNORECASE)
 
+SKIPPED = re.compile(r"$|:\w+:|<!--|\(\w[\w-]*\)=$|[-=*]{3,}$|\*(uk|ru)\* ")
+"""Lines of no sentence: options of directives, comments, targets, rules, terms in other languages."""
+HEAD = re.compile(r"#+ |[-*+] |\d+\. |: |> ")
+"""Begin of a heading, of an item of a list, of a quotation."""
 PROSE_FENCES = re.compile(r"^(`{3,}|:{3,})\{(glossary|note|warning|tip|important|admonition|figure|dropdown)\}")
 INLINE = [
     (re.compile(r"!?\[((?:[^\[\]]|\[[^\]]*\])*)\]\([^)]*\)"), r"\1"),  # links and pictures: their text
@@ -64,7 +68,7 @@ INLINE = [
     (re.compile(r"\*\*|__|(?<!\w)[*_]|[*_](?!\w)"), ""),
     (re.compile(r"\bhttps?://\S+"), "Link"),
 ]
-ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|etc|cf|vs|approx|eqs?|[Ff]igs?|[Nn]os?|pp?|vol|ed|al|[A-Z])\.$")
+ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|etc|cf|vs|approx|eqs?|[Ff]igs?|[Nn]os?|pp|vol|al)\.$")
 END = re.compile(r"[.!?][\"')\]]*(?=\s+[\"'(\[]*[A-Z0-9\u0400-\u04ff]|\s*$)")
 WORD = re.compile(r"[^\W_][\w'.,/^-]*")
 
@@ -130,10 +134,11 @@ def markdown(text, first=1):
         elif stripped.startswith("|"):
             close()
             blocks.append((number, stripped.replace("|", " . ").strip(" ."), False))
-        elif re.match(r":\w+:|<!--|\(\w[\w-]*\)=$|[-=*]{3,}$", stripped) or not stripped or line.startswith("    "):
-            close()  # options of directives, comments, targets, rules, indented code
+        elif SKIPPED.match(stripped) or line.startswith("    "):
+            close()
         else:
-            if re.match(r"#+ |[-*+] |\d+\. |: |> ", stripped) or (block and lines[number - first - 1].startswith("#")):
+            before = lines[number - first - 1]
+            if HEAD.match(stripped) or before.startswith("#") or (line.startswith("  ") and re.match(r"\w", before)):
                 close()
             if not block:
                 start = number

@@ -77,6 +77,7 @@ from .machine.loads import TorsionSpring as TorsionSpring
 from .machine.mechanism import Mechanism as Mechanism
 from .mechanics.principal_points import PrincipalPoints as PrincipalPoints
 from .mechanics.principal_points import principal_points as principal_points
+from .numbers.output_units import in_units as in_units
 from .solution.certainty import Uncertainty as Uncertainty
 from .solution.check_group import check as check
 from .solution.ground import Ground as Ground

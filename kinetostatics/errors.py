@@ -162,8 +162,10 @@ class DesignError(KinetostaticsError, ValueError):
         self.values = values
 
 
-class QuantityError(KinetostaticsError, AttributeError):
+class QuantityError(KinetostaticsError, AttributeError, KeyError):
     """The mechanism has no such joint, link or quantity; the message lists the existing ones.
+
+    It is a `KeyError` too, for ``s[name]``, ``s.ground[place]`` and other tables by name.
 
     Examples
     --------
@@ -175,6 +177,8 @@ class QuantityError(KinetostaticsError, AttributeError):
     ...     print(error)
     crank-slider: reaction is 'C', allowed: 'A', 'B', 'guide', 'O'
     """
+
+    __str__ = Exception.__str__
 
 
 class NotGivenError(KinetostaticsError):

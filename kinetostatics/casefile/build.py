@@ -286,7 +286,7 @@ def _read(path, part, table, keys):
     period = part.period or TURN
     if isinstance(part, tables.ValuesTable):
         unit = _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
-        return Table.from_csv(path, unit, part.area, period, part.slider, over=part.over)
+        return Table.from_csv(path, unit, part.area, period, part.slider, part.over, part.zero, part.sense)
     return Table.from_csv(path, period=period)
 
 

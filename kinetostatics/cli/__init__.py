@@ -18,6 +18,7 @@ from pathlib import Path
 
 from ..errors import HintWarning, KinetostaticsError, ParameterError
 from ..numbers import files
+from ..numbers.output_units import shown_in
 from .options import parser
 from .output import print_error, wants_csv, wants_json
 
@@ -42,7 +43,7 @@ def main(arguments=None):
             options = parser().parse_args(arguments)
             if wants_json(options) and wants_csv(options):
                 raise ParameterError("--json and --csv: both would be written to standard output; give --csv a FILE")
-            with _telling_new_folders(options):
+            with _telling_new_folders(options), shown_in(getattr(options, "units", None)):
                 module, name = options.command
                 getattr(import_module(f"{__name__}.{module}"), name)(options)
             sys.stdout.flush()

@@ -11,6 +11,8 @@ from pathlib import Path
 
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
+from ..numbers.formatting import number
+from ..numbers.output_units import shown_units
 from . import output
 from .output import print_columns, print_error, print_folded, print_table, require_writable, variant_words, write_table
 
@@ -79,7 +81,9 @@ def run(options):
             **_parts(case, solutions),
         },
         lambda: _print_extremes(case, solutions, given, shares, options),
-        lambda: output.stacked({name: solution.frame() for name, solution in solutions.items()}, "variant"),
+        lambda: output.stacked(
+            {name: solution.frame(shown_units()) for name, solution in solutions.items()}, "variant"
+        ),
         case,
     )
 
@@ -91,9 +95,12 @@ def _extremes(solution, given, shares):
     from ..solution.tables import largest_with_uncertainty
 
     found = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
+    means = {"mean_torque [N m]": solution.mean_torque, "mean_power [W]": solution.mean_power}
+    found["drive"] = means | {"energy_per_turn [J]": solution.energy_per_turn}
+    rows = {name: row.in_units(shown_units()) for name, row in extremes_by_name(solution).items()}
     found["extremes"] = {
         name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
-        for name, row in extremes_by_name(solution).items()
+        for name, row in rows.items()
     }
     if lose(solution):
         lost = solution.losses
@@ -113,7 +120,7 @@ def _parts(case, solutions):
 
     if not case.sizing:
         return {}
-    found = sizing_table(case.sizing, solutions)
+    found = shown_units().table(sizing_table(case.sizing, solutions))
     sizes = {
         name: {
             part: {number: {"value": value, "unit": found.loc[(part, number), "unit"]} for number, value in own.items()}
@@ -135,13 +142,17 @@ def _print_extremes(case, solutions, given, shares, options):
         print(f"\n{name}: {solution.mechanism.name}\n")
         found = extremes_by_name(solution)
         del found[CHECK_QUANTITY]
-        rows = found.values()
+        rows = [row.in_units(shown_units()) for row in found.values()]
         heads = ("quantity", [row.quantity.label for row in rows]), ("unit", [row.quantity.unit for row in rows])
         ends, errors = (
             list(zip(*parts, strict=True)) for parts in zip(*((row.ends, row.errors) for row in rows), strict=True)
         )
         names = [name.removeprefix("smallest ").removeprefix("largest ") for name in SHOWN]
         print_columns(*heads, *zip(names, ends, errors, strict=True))
+        print_folded(
+            f"\ndrive, exact means over the period: torque {number(solution.mean_torque)} N m, power "
+            f"{number(solution.mean_power)} W; energy per turn {number(solution.energy_per_turn)} J"
+        )
         print_folded(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"
@@ -267,7 +278,9 @@ def report(options):
 
     variant = ["--variant", options.variant] if options.variant else []
     pdf = ["--pdf", options.pdf] if options.pdf else []
-    command = shlex.join(["kinetostatics", "report", options.case, "--out", options.out, *variant, *pdf])
+    units = ",".join(f"{name}={unit}" for name, unit in shown_units().chosen.items())
+    given = [*variant, *pdf, *(["--units", units] if units else [])]
+    command = shlex.join(["kinetostatics", "report", options.case, "--out", options.out, *given])
     bar = sys.stderr is not None and sys.stderr.isatty()
     path = write(options.case, options.out, variant=options.variant, pdf=options.pdf, command=command, progress=bar)
     print(f"wrote {path}; open it in a browser")
@@ -292,12 +305,15 @@ def drive(options):
     if not runs:
         raise DriveError("\n".join(f"{name}: {reason}" for name, reason in reasons.items()))
     tables = {"running": running_table(runs, starts), "energy_per_turn": energy_table(runs)}
+    tables = {name: shown_units().table(table) for name, table in tables.items()}
     paths = []
     if options.out:
         from ..views.figures import draw_drive
 
         path = Path(options.out) / f"{case.path.stem}_drive.csv"
-        write_table(output.stacked({name: run.frame() for name, run in runs.items()}, "variant"), str(path))
+        write_table(
+            output.stacked({name: run.frame(shown_units()) for name, run in runs.items()}, "variant"), str(path)
+        )
         paths = [path, *draw_drive(case, runs, options.out)]
 
     def words():
@@ -341,7 +357,7 @@ def compare(options):
 
     def results():
         tables = {key: {"values": table.to_dict(), "published": told} for key, (_, table, told) in special.items()}
-        rows = {name: output.rows_by_name(_with_roles(case, item)) for name, item in found.items()}
+        rows = {name: _with_roles(case, item).to_dict("index") for name, item in found.items()}
         told = {"ratios": "reference / variant; above 1 the variant has less", "references": references}
         return {**told, "variants": rows, **tables}
 
@@ -357,8 +373,9 @@ def compare(options):
 
 def _with_roles(case, comparison):
     """Table of a comparison with columns "reference" and "variant" in place of the variants' names."""
-    table = comparison.frame()
-    table = case.with_published(table) if comparison.names[0] == case.reference else table
+    of_study = comparison.names[0] == case.reference
+    table = shown_units().table(comparison.frame(), case.published.value if of_study else ())
+    table = case.with_published(table) if of_study else table
     return table.set_axis([*table.columns[:1], "reference", "variant", *table.columns[3:]], axis=1)
 
 
@@ -384,10 +401,10 @@ def _print_group(case, reference, found):
     """Print comparisons with one reference; returns the largest power residual."""
     from ..views.report.tables import merged_rows
 
-    rows, omitted = merged_rows(found.values())
     of_study = reference == case.reference
-    published = case.published_of([row.label for row in rows]) if of_study else {}
     of_values, of_ratios = (case.published.value, case.published.ratio) if of_study else ({}, {})
+    rows, omitted = merged_rows(found.values(), of_values)
+    published = case.published_of([row.label for row in rows]) if of_study else {}
     residual = max(next(row.numbers for row in rows if row.label == RESIDUAL))
     rows = [row for row in rows if row.label != RESIDUAL]
     columns = [("quantity", [row.label for row in rows]), ("unit", [row.unit for row in rows])]

@@ -4,8 +4,10 @@ import argparse
 from functools import partial
 from typing import Any
 
+from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.formatting import normalise
+from ..numbers.output_units import output_units
 from ..numbers.units import to_si
 from ..version import __version__
 from .output import STDOUT
@@ -48,6 +50,16 @@ def _angle(text):
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
+def _units(text):
+    pairs = [part.partition("=") for part in text.split(",")]
+    try:
+        if not all(equals for _, equals, _ in pairs):
+            raise ParameterError('must be "force=kN,length=mm"')
+        return output_units({name.strip(): unit.strip() for name, _, unit in pairs}, "units")
+    except ParameterError as error:
+        raise argparse.ArgumentTypeError(str(error).removeprefix("units: ")) from None
+
+
 def _option(name, metavar, words, read=_name, **more):
     """Name and settings of an option, as `add_argument` takes them."""
     return name, {"type": read, "metavar": metavar, "help": words, **more}
@@ -66,6 +78,7 @@ def _csv(table):
 _angles, _designs = partial(_count, size=checks.BYTES_PER_ANGLE), partial(_count, size=DESIGN)
 CASE = _option("case", "CASE", "a TOML file, or the name of a shipped case: sawframe_2r63", _text)
 VARIANT = _option("--variant", "NAME", "only this variant")
+UNITS = _option("--units", "LIST", 'units of what is shown, "force=kN,length=mm"; SI and degrees else', _units)
 JSON = "--json", {"action": "store_true", "help": "results as JSON in place of tables, numbers in full"}
 COMMANDS: dict[str, tuple[Any, ...]] = {
     "list": (
@@ -100,6 +113,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
             "with --shares before it",
             action="append",
         ),
+        UNITS,
         JSON,
         _csv("all results, a row for each crank angle"),
     ),
@@ -108,6 +122,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         "dynamic coefficients against the reference variant",
         CASE,
         _option("--variant", "NAME", "only this variant against its reference"),
+        UNITS,
         JSON,
         _csv("the coefficients, a row for each"),
     ),
@@ -132,6 +147,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         VARIANT,
         _option("--start", "ANGLE", 'crank angle to start from, "90 deg" (0 deg)', _angle, default=0.0),
         _option("--out", "DIR", "folder for a CSV over the turn and the figures", _text),
+        UNITS,
         JSON,
         _csv("the tables, a row for each quantity"),
     ),
@@ -142,6 +158,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option("--out", "DIR", "folder for the figures", _text, required=True),
         _formats("file format (png)"),
         _option("--only", "FIGURE", "draw this figure only"),
+        UNITS,
         JSON,
     ),
     "report": (
@@ -151,6 +168,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option("--out", "FILE", "page to write, .html", _text, required=True),
         _option("--variant", "NAME", "only this variant beside the reference"),
         _option("--pdf", "FILE", "print it to a PDF too, by a browser that is there", _text),
+        UNITS,
     ),
     "precision": (
         ("commands", "precision"),

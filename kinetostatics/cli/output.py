@@ -14,6 +14,7 @@ from pathlib import Path
 
 from ..numbers import checks, files
 from ..numbers.formatting import angle, number, parse_heading
+from ..numbers.output_units import shown_units
 from ..version import __version__
 
 STDOUT = "-"
@@ -81,6 +82,7 @@ def print_table(table, bounds=None):
 
     Each part repeats the first columns. `bounds` is a table of the bounds on the errors of the numbers.
     """
+    table = shown_units().table(table)
     index = table.index.to_frame(index=False, name=table.index.name or "index")
     columns = [(name, index.iloc[:, at]) for at, name in enumerate(index)]
     for at, name in enumerate(table):
@@ -208,7 +210,8 @@ def deliver(options, results, words=None, table=None, case=None):
 
 
 def rows_by_name(table):
-    """Rows of a pandas DataFrame as dicts, by its index."""
+    """Rows of a pandas DataFrame as dicts, by its index, in the units of the output."""
+    table = shown_units().table(table)
     return {str(name): row for name, row in zip(table.index, table.to_dict("records"), strict=True)}
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from ..errors import ParameterError
 from ..numbers import checks, files, spreads
 from ..numbers.formatting import parse_heading, round_bound_up, round_uncertainty_up
+from ..numbers.output_units import shown_units
 from ..numbers.units import factor, to_si
 from ..solution.tables import format_with_uncertainty, largest_with_uncertainty
 from . import output
@@ -154,7 +155,7 @@ def print_uncertainty(solution, given):
     if not given:
         print_folded("\nnone of the uncertain numbers is one of this variant")
         return
-    table = largest_with_uncertainty(solution, given)
+    table = shown_units().table(largest_with_uncertainty(solution, given))
     rounding = table["rounding"].fillna(0.0)
     both = zip(table["largest"], table["tolerance"] + rounding, strict=True)
     columns = {"tolerance": "from tolerances", "rounding": "from rounding"}

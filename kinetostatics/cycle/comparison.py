@@ -10,6 +10,7 @@ from ..machine.loads import TURN
 from ..mechanics.quantities import label_of, magnitude, of_scene, unit_of
 from ..numbers import checks
 from ..numbers.lazy import cached_property
+from ..numbers.output_units import output_units
 from .extremes import extremes
 from .kinks import ANGLE_TOLERANCE
 from .load_functions import with_resolution
@@ -65,7 +66,10 @@ class Comparison:
 
     @cached_property
     def mean_torques(self):
-        """Mean absolute balancing torque of reference and balanced mechanism, integral over the turn, N m."""
+        """Mean magnitude of the balancing torque of reference and balanced mechanism, integral over the turn, N m.
+
+        Not their `Solution.mean_torque`, where positive and negative torque cancel.
+        """
         return mean_absolute_torque(self.reference), mean_absolute_torque(self.balanced)
 
     @cached_property
@@ -75,8 +79,13 @@ class Comparison:
 
     @property
     def mean_torque_ratio(self):
-        """Ratio of the mean absolute balancing torques."""
+        """Ratio of the mean magnitudes of the balancing torque, `mean_torques`."""
         return _ratio(*self.mean_torques)
+
+    @property
+    def mean_powers(self):
+        """Mean power of the drive of reference and balanced mechanism, W (`Solution.mean_power`)."""
+        return self.reference.mean_power, self.balanced.mean_power
 
     def peak_reactions(self, joint):
         """Largest reaction at a joint, or other force, such as "ground cam", in reference and balanced mechanism, N."""
@@ -101,19 +110,30 @@ class Comparison:
         return tuple(_range(solution, "cam_force") for solution in self._both)
 
     def inertia_force_range(self, link="coupler"):
-        """Smallest and largest inertia force of a link in reference and balanced mechanism, N."""
+        """Smallest and largest inertia force of a link in reference and balanced mechanism, N; NaN for one without it.
+
+        Raises
+        ------
+        QuantityError
+            Neither has such a link.
+        """
+        links = tuple(dict.fromkeys(name for solution in self._both for name in solution.mechanism.links))
+        if problem := checks.choice("inertia_force_range: link", link, links):
+            raise QuantityError(problem)
 
         def force(solution):
             return magnitude(solution.inertia_force(link))
 
         return tuple(_range(solution, force) for solution in self._both)
 
-    def frame(self):
+    def frame(self, units=None):
         """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio.
 
-        Values that are rounding, within their proven bound or beside the largest force or torque, are 0.
+        Values that are rounding, within their proven bound or beside the largest force or torque, are 0. `units` is a
+        dict of dimension to unit as of `in_units`.
         """
-        return self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)
+        table = self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)
+        return output_units(units, "frame").table(table)
 
     def error_bounds(self):
         """Proven bounds on the rounding errors of `frame`, a pandas DataFrame of the same rows and columns.
@@ -132,7 +152,12 @@ class Comparison:
     @cached_property
     def rows(self):
         """Rows of `frame`, a list: `label`, `unit`, the `pair` of values, `ratio` and bounds on the errors of each."""
-        rows = [self._row("mean |balancing torque|", TORQUE, self.mean_torques), *self._torque_rows()]
+        rows = [self._row("mean |balancing torque|", TORQUE, self.mean_torques)]
+        signed = tuple(solution.mean_torque for solution in self._both)
+        if any(signed):
+            rows.append(Row("mean balancing torque", "N m", signed, _ratio(*signed)))
+            rows.append(Row("mean drive power", "W", self.mean_powers, _ratio(*self.mean_powers)))
+        rows += self._torque_rows()
         if lose(*self._both):
             both = [solution.losses for solution in self._both]
             for name in dict.fromkeys(name for losses in both for name in losses.lost):

@@ -99,7 +99,7 @@ class Extremes:
     @property
     def range(self):
         """Smallest and largest value over the turn; both are the constant if it has no extremum."""
-        return (self.value.min(), self.value.max()) if len(self) else (self.constant, self.constant)
+        return (float(self.value.min()), float(self.value.max())) if len(self) else (self.constant, self.constant)
 
     @property
     def largest(self):
@@ -349,6 +349,12 @@ class ExtremesRow(NamedTuple):
     quantity: Quantity
     ends: tuple[float, ...]
     errors: tuple[float, ...]
+
+    def in_units(self, units):
+        """The row in `OutputUnits`; crank angles stay in degrees."""
+        factor, unit = units.of(self.quantity.unit)
+        ends, errors = ((low * factor, at, high * factor, to) for low, at, high, to in self[1:])
+        return ExtremesRow(self.quantity._replace(unit=unit), ends, errors)
 
 
 def extremes_frame(solution):

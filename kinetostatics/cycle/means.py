@@ -24,6 +24,8 @@ ROUNDINGS = 4
 sum of all pieces (rounded once), quotient by the period."""
 TERM_ROUNDING = 1e-14
 """Rounding of a sum relative to its largest term."""
+ZERO_MEAN = 1e-12
+"""Mean, relative to that of the magnitude, that counts as 0."""
 
 
 def mean_absolute_torque(solution):
@@ -107,21 +109,50 @@ def _mean_of_absolute_torque(turn):
     return math.fsum(parts.whole(sizes)) / turn.period, float(error), floor, parts
 
 
-def energy_per_turn(solution):
-    """Work of the balancing torque in a turn of the crank, J: energy from drive to loads, negative in reverse.
+class DriveMeans(NamedTuple):
+    """Means of the balancing torque over the period: `torque`, N m, its `power`, W, its `energy` per turn, J.
 
-    It is the work over the period of the solution, divided by the number of turns.
+    The torque is the mean over the crank angle, the power the mean over time, energy from drive to loads is positive.
+    """
+
+    torque: float
+    power: float
+    energy: float
+
+
+def drive_means(solution):
+    """`DriveMeans` of a solution of one design; by Chebyshev series, as for `mean_absolute_torque`.
 
     Raises
     ------
     ParameterError
         The solution is a batch of designs, or does not close all round.
+    JammingError
+        Friction jams somewhere in the turn.
+
+    Warns
+    -----
+    ConditionWarning
+        The load is so uneven that fewer digits of the means are right.
     """
-    turn = closed_turn(solution, "energy per turn")
+    turn = closed_turn(solution, "mean torque")
     at = turn.at.moved_to(turn.angle[turn.usable])
-    floor = TERM_ROUNDING * at.largest_torque_term
-    (mean,), *_ = means(lambda angle: turn.at.moved_to(turn.clear(angle)).balancing_torque[None], turn, floor)
-    return TURN * float(mean) * (-1.0 if np.any(np.asarray(at.crank_sense) < 0.0) else 1.0)
+    floor, varies = TERM_ROUNDING * at.largest_torque_term, np.ndim(at.crank_speed) > 0
+
+    def by_angle(angle):
+        there = turn.at.moved_to(turn.clear(angle))
+        time = 1.0 / np.abs(there.crank_speed) if varies else 1.0
+        return np.array([there.balancing_torque, np.broadcast_to(time, angle.shape)])
+
+    (torque, time), (error, _), pieces, values = means(by_angle, turn, [floor, 0.0])
+    size = math.fsum(pieces.whole(np.abs(values[0, :, 1:-1]))) / turn.period
+    if error > WARNING_ERROR * size + floor:
+        text = f"mean torque: it is right to about {error:.2g} N m of {torque:.6g} only, so uneven is the load"
+        warnings.warn(text, ConditionWarning, stacklevel=5)
+    torque = 0.0 if abs(torque) <= ZERO_MEAN * size + floor else float(torque)
+    energy = TURN * torque * (-1.0 if np.any(np.asarray(at.crank_sense) < 0.0) else 1.0)
+    power = energy / (TURN * float(time)) if varies else torque * float(at.crank_speed)
+    return DriveMeans(torque, power + 0.0, energy + 0.0)
 
 
 def closed_turn(solution, owner):

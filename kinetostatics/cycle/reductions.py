@@ -309,7 +309,8 @@ def parsed(text, parts=None) -> Output | SolutionNumber:
     if quantity and (reduction in REDUCTIONS or found.order is not None):
         return found
     names = ", ".join((*REDUCTIONS, "harmonic_1", "harmonic_2 ..."))
-    meant = None if reduction in REDUCTIONS else checks.nearest(reduction, REDUCTIONS)
+    allowed = *REDUCTIONS, "mean balancing_torque"
+    meant = None if reduction in REDUCTIONS else checks.nearest(reduction, allowed)
     advice = f"; did you mean {' '.join([*words[:ratio], meant, *quantity])!r}?" if meant else ""
     raise ParameterError(
         f'output {text!r} must be a reduction and a quantity, such as "largest O" or "ratio mean_absolute '

@@ -110,7 +110,7 @@ def _files(variant, scene, path):
         if isinstance(found, Table):
             column, unit = COLUMNS[found.over]
             of = item.RULES.rules[item.VALUE].rule.unit
-            columns = {f"{column} [{unit}]": found.x, f"{VALUE_HEADINGS[of]} [{_unit_text(of)}]": found.y}
+            columns = {f"{column} [{unit}]": found.sense * found.x, f"{VALUE_HEADINGS[of]} [{_unit_text(of)}]": found.y}
             if found.back is not None:
                 columns[f"{VALUE_HEADINGS[of]}_back [{_unit_text(of)}]"] = found.back
             yield _table_file(path.stem, variant, f"load_{number}"), _columns(columns)
@@ -211,6 +211,10 @@ def _table_reference(values, file):
     keys = {"file": _quoted(file), "over": _quoted(values.over)}
     if values.period != TURN:
         keys["period"] = _quoted(f"{360 * round(values.period / TURN)} deg")
+    if values.zero is not None:
+        keys["zero"] = _quoted(values.zero if values.from_dead_centre else "0 deg")
+    if values.sense == -1:
+        keys["sense"] = "-1"
     return _inline_table(keys | ({"slider": _quoted(values.slider)} if values.slider is not None else {}))
 
 

@@ -14,6 +14,7 @@ from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..solution.scene import solve
 from .linkage import crank_sliders
 
@@ -150,10 +151,12 @@ class Balanced:
     {'crank': -0.05}
     """
 
-    bare: Mechanism
-    mechanism: Mechanism
+    bare: Mechanism = field(repr=False)
+    mechanism: Mechanism = field(repr=False)
     counterweights: dict = field(default_factory=dict)
     in_planes: tuple = ()
+
+    __repr__ = repr_with_units(counterweights="kg, m", in_planes="m, kg, m")
 
     @property
     def ratio(self):

@@ -13,6 +13,7 @@ from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
 from ..machine.loads import TURN, Spring, surge
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..solution.scene import Scene
 
 REST_SPEED_RATIO = 1e-6
@@ -53,6 +54,8 @@ class Surge(NamedTuple):
     natural_frequency: float
     order: float
     amplitudes: np.ndarray
+
+    __repr__ = repr_with_units(natural_frequency="rad/s", amplitudes="m")
 
     @property
     def excitation(self):

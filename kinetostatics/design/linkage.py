@@ -16,6 +16,7 @@ from ..errors import ParameterError
 from ..machine.builders import four_bar
 from ..machine.group import FRAME, Bar
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..numbers.planar import cross, dot
 
 
@@ -81,12 +82,14 @@ class Grashof:
     --------
     >>> import kinetostatics as ks
     >>> ks.linkage.grashof(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1)))
-    Grashof(kind='crank-rocker', turning_joints=('O', 'A'), intervals=((0.0, 6.283185307179586),))
+    Grashof(kind='crank-rocker', turning_joints=('O', 'A'), intervals=((0, 6.28319),) rad)
     """
 
     kind: str
     turning_joints: tuple[str, ...]
     intervals: tuple[tuple[float, float], ...]
+
+    __repr__ = repr_with_units(intervals="rad")
 
 
 KIND_BY_SHORTEST = {
@@ -387,6 +390,8 @@ class Swing:
     smallest: float
     largest_at: float
     smallest_at: float
+
+    __repr__ = repr_with_units(largest="rad", smallest="rad", largest_at="rad", smallest_at="rad")
 
     @property
     def range(self):

@@ -13,7 +13,7 @@ from ..errors import QuantityError
 from ..machine.friction import NO_FRICTION
 from ..mechanics.load_values import numbered_titles
 from ..numbers import checks
-from ..numbers.formatting import number
+from ..numbers.formatting import number, repr_with_units
 from ..numbers.parameter_tree import replace_unchecked
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
@@ -42,6 +42,8 @@ class Part:
     kind: str
     energy: float
     swing: float = np.nan
+
+    __repr__ = repr_with_units(energy="J", swing="J")
 
 
 @dataclass(frozen=True)

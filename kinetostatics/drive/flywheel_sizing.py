@@ -8,6 +8,7 @@ import numpy as np
 
 from ..cycle.load_functions import resolution_note
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from .one_dof import DrivenMachine
 from .resolution import resolve_and_hint
 from .running import Running, find_flywheel, parse_fluctuation
@@ -45,7 +46,9 @@ class Flywheel:
     energy: float
     fluctuation: float
     running: Running | None = field(default=None, repr=False)
-    note: str = ""
+    note: str = field(default="", repr=False)
+
+    __repr__ = repr_with_units(inertia="kg m2", energy="J")
 
 
 def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:

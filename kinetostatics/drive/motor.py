@@ -8,6 +8,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property
 
 MAX_SPEED_RATIO = 2.0
@@ -213,6 +214,8 @@ class Kloss(Motor):
     synchronous_speed: float
     overload: float
 
+    __repr__ = repr_with_units(power="W", speed="rad/s", synchronous_speed="rad/s", transmission="1", inertia="kg m2")
+
     @cached_property
     def breakdown_torque(self):
         return self.overload * self.power / self.speed
@@ -250,6 +253,8 @@ class Linear(Motor):
     standstill_torque: float
     idle_speed: float
 
+    __repr__ = repr_with_units(standstill_torque="N m", idle_speed="rad/s", inertia="kg m2")
+
     def torque(self, speed):
         return self.standstill_torque * (1.0 - speed / self.idle_speed)
 
@@ -267,6 +272,8 @@ class TableMotor(Motor):
 
     speeds: np.ndarray
     torques: np.ndarray
+
+    __repr__ = repr_with_units(speeds="rad/s", torques="N m", inertia="kg m2")
 
     def torque(self, speed):
         inside = np.clip(speed, *self.limits)

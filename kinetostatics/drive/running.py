@@ -16,11 +16,12 @@ import numpy as np
 
 from ..cycle.load_functions import resolution_note
 from ..cycle.piecewise import Pieces
-from ..errors import DriveError
+from ..errors import DriveError, QuantityError
 from ..machine.loads import TURN
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property, pyplot
+from ..numbers.output_units import output_units
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.parameters import crank_angles
 from ..solution.scene import Scene
@@ -67,6 +68,16 @@ MAX_DOUBLINGS = 60
 """Doublings of the flywheel before the search ends."""
 INERTIA_TOLERANCE = 1e-13
 """Relative error of the flywheel."""
+OWN_QUANTITIES = {
+    "time": "time",
+    "crank_speed": "speed",
+    "crank_acceleration": "acceleration",
+    "motor_torque": "motor_torque",
+    "motor_speed": "motor_speed",
+    "motor_power": "motor_power",
+    "kinetic_energy": "kinetic_energy",
+}
+"""Attributes of a `Running` over the crank angle, by the name for ``run[name]``; the energy with the flywheel's."""
 MIN_FLYWHEEL_RATIO = 1e-3
 """Smallest flywheel of the search relative to the machine's own inertia, where lighter ones do not run."""
 
@@ -121,7 +132,7 @@ def find_flywheel(wanted, running_with, unit):
 
 @dataclass(frozen=True, eq=False)
 class Running:
-    """A machine in periodic running; made by `steady`.
+    """A machine in periodic running; made by `steady`. ``run[name]`` gives any of its `quantities`.
 
     Attributes
     ----------
@@ -151,6 +162,8 @@ class Running:
     _pieces: Pieces = field(repr=False)
     _energy: np.ndarray = field(repr=False)
     _again: Callable[[float], "Running"] = field(repr=False)
+
+    __iter__ = None  # not by number
 
     def __repr__(self):
         lines = [
@@ -324,8 +337,11 @@ class Running:
         torques.legend(lines, [str(line.get_label()) for line in lines], frameon=False, fontsize="small")
         return ax, torques
 
-    def frame(self):
-        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive."""
+    def frame(self, units=None):
+        """Table with a row for each crank angle, a pandas DataFrame: time, motion, torques and power of the drive.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
         columns = {
@@ -338,9 +354,45 @@ class Running:
             "balancing_torque [N m]": self.solution.balancing_torque,
             "load_torque [N m]": self.solution.load_torque,
             **({"friction_loss [W]": self.solution.friction_loss} if self.scene.friction.acting else {}),
-            "kinetic_energy [J]": self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2,
+            "kinetic_energy [J]": self.kinetic_energy,
         }
-        return pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        table = pd.DataFrame({name: np.ravel(values) for name, values in columns.items()})
+        return output_units(units, "frame").table(table)
+
+    @property
+    def quantities(self):
+        """All names that ``run[name]`` takes, a tuple: those of the drive, then those of `solution`."""
+        return tuple(dict.fromkeys((*OWN_QUANTITIES, *self.solution.quantities)))
+
+    def __getitem__(self, name):
+        """A quantity of the drive or of `solution` by name, over the crank angles, as ``s[name]`` of a `Solution`.
+
+        Raises
+        ------
+        QuantityError
+            There is no such quantity; the message lists all and suggests the nearest.
+
+        Examples
+        --------
+        >>> import kinetostatics as ks
+        >>> work = ks.ProcessForce(ks.Table([0.15, 0.25], [-200.0, -200.0], over="travel", back=[0.0, 0.0]))
+        >>> pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 100.0, loads=work)
+        >>> run = ks.drive.steady(pump, ks.drive.Motor.linear(20.0, 105.0), flywheel=0.05)
+        >>> run["motor_torque"].shape == run["guide_force"].shape
+        True
+        """
+        if isinstance(name, str) and name in OWN_QUANTITIES:
+            return getattr(self, OWN_QUANTITIES[name])
+        try:
+            return self.solution[name]
+        except QuantityError:
+            allowed = self.quantities
+        raise QuantityError(checks.choice(f"{self.scene.mechanism.name}: quantity", name, allowed))
+
+    @property
+    def kinetic_energy(self):
+        """Kinetic energy of links and flywheel, (..., N), J."""
+        return self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2
 
     # energy and power
 
@@ -376,6 +428,14 @@ class Running:
     def rotor_loss_per_turn(self):
         """Slip loss in the rotor of an induction motor in a turn, J."""
         return self.air_gap_energy_per_turn - self.energy_per_turn
+
+    @property
+    def mean_torque(self):
+        """Mean over the crank angle of the motor's torque on the crank, N m; `energy_per_turn` by the angle of a turn.
+
+        Positive counter-clockwise; equal to that of the balancing torque, for the flywheel returns what it takes.
+        """
+        return self.energy_per_turn * self.direction / TURN
 
     @property
     def mean_power(self):

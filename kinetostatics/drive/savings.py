@@ -10,12 +10,14 @@ import numpy as np
 
 from ..cycle.comparison import Comparison
 from ..numbers import checks
+from ..numbers.output_units import output_units
 from .energy_flow import HELD, ROTOR
 
 DRIVE_FIGURES = {
     "energy per turn, at the shaft": ("energy_per_turn", "J"),
     "energy per turn, through the air gap": ("air_gap_energy_per_turn", "J"),
     "lost in the rotor per turn, by slip": ("rotor_loss_per_turn", "J"),
+    "mean motor torque, on the crank": ("mean_torque", "N m"),
     "mean motor power": ("mean_power", "W"),
     "peak motor power": ("peak_power", "W"),
     "peak motor torque, at its shaft": ("peak_motor_torque", "N m"),
@@ -112,11 +114,15 @@ class DrivenComparison(Comparison):
         columns = ["quantity", "unit", *self.names, "ratio", "saved"]
         return pd.DataFrame(rows, columns=columns).set_index("quantity").dropna(how="all", subset=list(self.names))
 
-    def frame(self):
-        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms."""
+    def frame(self, units=None):
+        """All coefficients as a pandas DataFrame, those of the drives after those of the mechanisms.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
-        return pd.concat([super().frame(), self.drive_frame().drop(columns="saved")])
+        of_drives = output_units(units, "frame").table(self.drive_frame().drop(columns="saved"))
+        return pd.concat([super().frame(units), of_drives])
 
 
 def _ratio(reference, balanced):
@@ -178,6 +184,7 @@ def _running_rows(run, start):
         ("crank angle of the largest", "deg"): high_angle,
         ("fluctuation, by the mean over time", ""): run.fluctuation,
         ("fluctuation, by the mean of the extremes", ""): run.fluctuation_arithmetic,
+        ("mean motor torque, on the crank", "N m"): run.mean_torque,
         ("mean motor power", "W"): run.mean_power,
         ("rms motor power", "W"): run.rms_power,
         ("peak motor power", "W"): run.peak_power,

@@ -12,7 +12,9 @@ from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.brackets import find_roots
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property, pyplot
+from ..numbers.output_units import output_units
 from ..numbers.parameter_tree import replace_unchecked
 from ..solution.scene import Scene
 from .motor import Motor
@@ -51,6 +53,8 @@ class Event(NamedTuple):
     name: str
     time: float
     crank_angle: float
+
+    __repr__ = repr_with_units(time="s", crank_angle="rad")
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,11 +188,14 @@ class Trajectory:
         """Kinetic energy of links and flywheel, J."""
         return self.solution.kinetic_energy + 0.5 * self.flywheel * self.speed**2
 
-    def frame(self):
-        """Table with a row for each time, a pandas DataFrame: motion, energies, torques of motor and loads."""
+    def frame(self, units=None):
+        """Table with a row for each time, a pandas DataFrame: motion, energies, torques of motor and loads.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
-        return pd.DataFrame(
+        table = pd.DataFrame(
             {
                 "time [s]": self.time,
                 "crank_angle [deg]": np.degrees(self.crank_angle),
@@ -202,6 +209,7 @@ class Trajectory:
                 "potential_energy [J]": self.solution.potential_energy,
             }
         )
+        return output_units(units, "frame").table(table)
 
     def plot(self, ax=None):
         """Crank speed over time, reversals and standstill marked; returns the axes."""

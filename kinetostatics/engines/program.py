@@ -292,7 +292,8 @@ def plausibility_test(kind, judged=()):
         ]
     odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
     odd += ["True" for _ in plausibility.loads_beside_rods(scene.mechanism, scene.loads)]
-    odd += ["True"] * plausibility.needs_look(scene.loads)
+    tables = any(plausibility.doubtful_table(load) is not None for load in kind.numbered.loads)
+    odd += ["True"] * (tables or plausibility.needs_look(scene.loads))
     odd += [f"abs({noted(gap)}) <= 1e-9 * {noted(length)}" for length, gap in arms]
     source = f"""def line(numbers):
     v = sizes(0.0, 0.0, 1.0, numbers, ())

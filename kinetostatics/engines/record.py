@@ -265,7 +265,7 @@ class Recorder:
             return ProcessForce(self._given(load, place), load.on)
         value = load.value_now
         if isinstance(value, loads.Table):
-            return replace_unchecked(load, **{load.VALUE: self._read(value, load.UNIT, place)})
+            return replace_unchecked(load, **{load.VALUE: self._read(value, load.UNIT, place, idle)})
         if not callable(value) or self._is_elementwise(
             value, lambda angle: [value(without_forces(replace(idle, crank_angle=angle)))]
         ):
@@ -278,8 +278,7 @@ class Recorder:
         To first order only these angles matter, because the coordinate has an extremum there; so derivatives are exact.
         For a cam from a table the coordinates come from a table themselves.
         """
-        mechanism = idle.mechanism
-        is_tabled = any(isinstance(getattr(group, "cam", None), _Tabled) for group in mechanism.groups)
+        mechanism, is_tabled = idle.mechanism, _has_tabled_cam(idle.mechanism)
         rows = self._tabled(
             (("s_f", 0, "m"), ("s_n", 0, "m")) if is_tabled else (("phi_f", 0, "rad"), ("phi_n", 0, "rad")),
             lambda motion, leaves: loads.dead_centres(motion, load.on)[is_tabled],
@@ -287,6 +286,23 @@ class Recorder:
             place,
         )
         return rows if is_tabled else [mechanism.place(row).travels[load.on].position for row in rows]
+
+    def _zero_angle(self, table, item, place, idle):
+        """Crank angle of the dead centre where a table begins."""
+        is_tabled = _has_tabled_cam(idle.mechanism)
+        ((zero,),) = self._tabled(
+            (("phi_0", 0, "rad"),),
+            lambda motion, leaves: [item(motion).zero_angle(motion)],
+            f"a table from {table.zero} beside a cam of samples" if is_tabled else "",
+            place,
+        )
+        slider = table.slider or next(iter(idle.mechanism.guides))
+        return _nodes(zero) if is_tabled else self._refined(_nodes(zero), idle.mechanism, slider)
+
+    def _refined(self, angle, mechanism, slider):
+        """Crank angle of a dead centre after a Newton step, which gives its derivatives: the rate is zero there."""
+        travel = mechanism.place(angle).travels[slider]
+        return angle - travel.first / travel.second
 
     def _given(self, load, place):
         """Values of a load given by user code, from a table."""
@@ -296,28 +312,35 @@ class Recorder:
         )
         return values
 
-    def _read(self, table, unit, place):
-        """Values of a table; over travel a function of the motion, by its pieces, which are found beforehand."""
+    def _read(self, table, unit, place, idle):
+        """Values of a table; unless it is over the crank angle, a function of the motion by pieces found beforehand."""
 
         def item(motion):
             return motion.loads[place].value_now
 
-        if table.over == "angle":
+        def rounding(motion, leaves):
+            return [table_pieces.rounding_bound(item(motion), motion) / UNIT_ROUNDOFF]
+
+        by_angle = table.over == "angle"
+        if by_angle and not table.from_dead_centre:
             (values,) = self._tabled((("value", 0, unit),), lambda motion, leaves: [item(motion)(motion)], of=place)
-            (errors,) = self._tabled(
-                ERRORS[:1], lambda motion, leaves: [table_pieces.rounding_bound(item(motion), motion) / UNIT_ROUNDOFF]
-            )
+            (errors,) = self._tabled(ERRORS[:1], rounding)
             self.inputs[values[0]] = lambda bounds: Error(0.0, errors[0])
             return values
-        names = ("start", 0, "m"), ("value", 0, unit), ("slope", 0, f"{unit}/m")
+        own = "rad" if by_angle else "m"
+        names = ("start", 0, own), ("value", 0, unit), ("slope", 0, f"{unit}/{own}")
         start, value, slope = self._tabled(names, lambda motion, leaves: item(motion).pieces(motion), of=place)
         kinks = self._tabled(ERRORS, lambda motion, leaves: table_pieces.kink_bounds(item(motion), motion))
+        own_error = self._tabled(ERRORS[:1], rounding)[0][0] if by_angle else None
+        zero = self._zero_angle(table, item, place, idle) if by_angle else None
 
         def read(motion):
-            travel, rate = (np.ravel(part)[0] for part in (table.place(motion), table.rate(motion)))
-            self.inputs[value[0]] = partial(_error_of_piece, kinks=[row[0] for row in kinks], travel=travel, rate=rate)
+            given = (motion.crank_angle - zero, 1.0) if by_angle else (table.place(motion), table.rate(motion))
+            travel, rate = (np.ravel(part)[0] for part in given)
+            nearby = {"kinks": [row[0] for row in kinks], "own": own_error}
+            self.inputs[value[0]] = partial(_error_of_piece, travel=travel, rate=rate, **nearby)
             self.inputs[slope[0]] = lambda bounds: Error(3.0, None)
-            return table.read(motion, (start, value, slope))
+            return table.read(motion, (start, value, slope), zero)
 
         return read
 
@@ -360,14 +383,18 @@ def _nodes(*nodes):
     return np.array(nodes, dtype=object)
 
 
-def _error_of_piece(bounds, kinks, travel, rate):
-    """Error of a value of a table over travel: the exact travel may be in the next piece, or on the other stroke."""
+def _has_tabled_cam(mechanism):
+    return any(isinstance(getattr(group, "cam", None), _Tabled) for group in mechanism.groups)
+
+
+def _error_of_piece(bounds, kinks, travel, rate, own=None):
+    """Error of a value of a table: the exact place may be in the next piece, or on the other stroke; `own` is added."""
     change, jump, near, distance = kinks
     bounds.look_at((travel, rate))
-    jumps = plus(jump / UNIT_ROUNDOFF, 0.0 / bounds.above(near, bounds.total(rate)))
+    jumps = plus(plus(jump / UNIT_ROUNDOFF, own), 0.0 / bounds.above(near, bounds.total(rate)))
     total = bounds.total(travel)
-    if total is None:  # the travel is exact
+    if total is None:  # the place is exact
         return Error(0.0, jumps)
-    off = 2.0 * total  # also of the travel that selected the piece
+    off = 2.0 * total  # also of the place that selected the piece
     jumps = plus(jumps, 0.0 / bounds.above(near, off))
     return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT_ROUNDOFF, None), jumps))

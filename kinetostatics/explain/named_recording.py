@@ -38,8 +38,19 @@ KERNELS = (
 """Modules whose local variables give names."""
 GENERIC = tuple(f"kinetostatics.machine.{name}" for name in ("group", "friction", "kinematic_state"))
 AXES = ("x", "y")
-DEAD_CENTRES = {"phi_f": "crank angle of the far dead centre", "phi_n": "crank angle of the near dead centre"}
+DEAD_CENTRES = {
+    "phi_f": "crank angle of the far dead centre",
+    "phi_n": "crank angle of the near dead centre",
+    "phi_0": "crank angle of the dead centre at which the table begins",
+}
 """Words for the angles at which the stroke of a load's slider is evaluated."""
+
+
+class NamedRecorder(Recorder):
+    """Recorder without the steps that only derivatives need."""
+
+    def _refined(self, angle, mechanism, slider):
+        return angle
 
 
 class Named(NamedTuple):
@@ -212,7 +223,7 @@ def record_with_names(state, paths, units):
     `paths` maps the place of a number among the leaves to its path, `units` paths to SI units.
     """
     structure, _ = state.apart
-    recorder = Recorder(structure)
+    recorder = NamedRecorder(structure)
     groups, values = state.mechanism.groups, map(value_of, state.loads)
     users = {type(part).__module__ for part in (*groups, *(getattr(one, "cam", None) for one in groups), *state.loads)}
     users |= {getattr(value, "__module__", "") for value in values if callable(value)}

@@ -12,6 +12,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
+from .dimensions import Span, of_fixed_point
 from .group import EMPTY, FRAME, PLANE, POSITION, Bar, Declaration, Group, Output, Part, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
@@ -157,6 +158,10 @@ class Crank(checks.Checked, Part):
         )
 
     @property
+    def dimensions(self):
+        return {} if self.length is None else {("length",): Span("O", "A")}
+
+    @property
     def throws(self):
         """Pin A, if the crank has a length."""
         return {} if self.length is None else {"A": Throw((self.length, 0.0), True)}
@@ -238,6 +243,13 @@ class Pin(checks.Checked, Group):
     @property
     def joints(self):
         return {self.name: Point(self.on, *self.at)}
+
+    @property
+    def dimensions(self):
+        if self.on == FRAME:
+            return of_fixed_point("at", self.name)
+        foot = (self.on, self.at[0], 0.0)
+        return {("at", 0): Span((self.on, 0.0, 0.0), foot), ("at", 1): Span(foot, self.name)}
 
     @property
     def throws(self):

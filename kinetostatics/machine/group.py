@@ -12,8 +12,8 @@ in a `Declaration`, named without the label; `Group` adds the label and makes th
 
 A table that follows another rule is its own property, with labelled names. Other lists are `hangs_on`, the joints that
 the group is attached to; `knots`, where the law of a cam bends or jumps; `curves`, joints on a curve, with its name in
-drawings; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes. Reactions and forces with
-their units, `outputs`, follow from `pairs`.
+drawings; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes; `dimensions`, the lengths
+and angles of a drawing (`machine.dimensions`). Reactions and forces with their units, `outputs`, follow from `pairs`.
 
 Kernels, without branches on values
 -----------------------------------
@@ -203,6 +203,8 @@ class Part:
     """Forces, by name, at whose change of sign other forces have a kink."""
     throws: Any = EMPTY
     """Pins of the crank that it adds, each a `Throw`."""
+    dimensions: Any = EMPTY
+    """What its numbers measure on a drawing, by their steps (`machine.dimensions`)."""
 
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)

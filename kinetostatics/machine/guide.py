@@ -10,6 +10,7 @@ from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Axis
 from ..numbers.planar import add_vectors, number_or_zero, rotate
+from .dimensions import ORIGIN, Angle, Span
 from .links import Joint, LinkMotion, present
 
 POINT = checks.Pair("m")
@@ -144,6 +145,12 @@ class Guide(checks.Checked):
             length = (x * x + y * y).sqrt()
             checks.require("guide", None if length else f"W1 and W2 coincide at {points['W1']}")
             return cls(None, float((x * y1 - y * x1) / length), (float(x / length), float(y / length)))
+
+    def dimensions(self, pin):
+        """Offset from O, and angle at the pin of a slider."""
+        x, y = self.direction
+        foot = (-self.guide_offset * y, self.guide_offset * x)
+        return {("guide_offset",): Span(ORIGIN, foot), ("angle",): Angle(pin)}
 
     @property
     def rounded(self):

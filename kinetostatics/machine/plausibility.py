@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import NotGivenError, ParameterError
 from ..numbers import checks
 from ..numbers.arithmetic import sqrt
 from .group import FRAME
 from .links import present
-from .loads import GasSpring, Spring, spring_masses, surge
+from .loads import GasSpring, ProcessForce, Spring, Table, dead_centres, spring_masses, surge
 from .loads.gas_spring import PRESSURES
 from .loads.points import point_on_link
 
@@ -29,6 +30,14 @@ MAX_PIN_SPEED = 60.0
 """Largest plausible speed of a crank's pin, m/s: racing engines reach 50."""
 MIN_MASS = 1e-75
 """Mass, kg, that replaces zero in a batch of springs with and without mass."""
+MAX_PEAK_DISTANCE = np.radians(60.0)
+"""Distance of the largest force of a table on a slider from a dead centre beyond which its zero may be missing, rad."""
+PEAK_SHARE, MAX_PEAK_WIDTH, MAX_SUCTION = 0.99, np.radians(90.0), 0.2
+"""Of an indicator diagram: share of the largest force from which rows belong to its peak, largest width of the peak at
+half its height, rad, and largest share of forces of the other sign."""
+RATE_STEP = np.radians(5.0)
+RATE_ANGLES = 1e-3 + RATE_STEP * np.arange(73)
+"""Crank angles between which the dead centres of a slider are expected, rad, and their step."""
 TWO_TURNS = 4.0 * np.pi
 """Least size of crank angles that may be degrees, rad."""
 TURN_CONVERTED_TWICE = 2.0 * np.pi * np.pi / 180.0
@@ -112,6 +121,70 @@ def _surge_hints(mechanism, spring, crank_speed):
         )
 
 
+def doubtful_table(load):
+    """Table over the angle that is a force on a slider, with a dead centre as its zero or without a zero, or None."""
+    table = load.value_now if isinstance(load, ProcessForce) else None
+    return table if isinstance(table, Table) and table.over == "angle" and table.zero != 0.0 else None
+
+
+def table_hints(motion):
+    """Yield hints on tables over the angle: a peak far from all dead centres, or a sense against the rotation."""
+    speed = motion.crank_speed
+    for load in motion.loads:
+        table = doubtful_table(load)
+        if table is not None and table.zero is None:
+            yield from _peak_hints(motion, load, table)
+        elif table is not None and checks.has_known_values(speed) and np.all(speed * table.sense < 0.0):
+            yield (
+                f"{load.title}: its table from {table.zero} has sense={table.sense:+d}, but the crank turns at "
+                f"{_most(speed):.6g} rad/s, so it is read backwards; for degrees after {table.zero} in the sense of "
+                f"rotation give sense={-table.sense:+d}"
+            )
+
+
+def _peak_hints(motion, load, table):
+    """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres."""
+    lengths = [bar.length for bar in motion.mechanism.bars]
+    if not (_is_diagram(table) and all(map(checks.has_known_values, lengths))):
+        return
+    peaks = table.x[table.y / table.largest >= PEAK_SHARE]
+    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first
+    if not checks.has_known_values(rate):
+        return
+    turns_back = np.diff(np.signbit(rate))
+    stops = RATE_ANGLES[:-1] if turns_back.ndim > 1 else RATE_ANGLES[:-1][turns_back]
+    if turns_back.ndim == 1 and np.any(_turn_distance(peaks[:, None], stops) < MAX_PEAK_DISTANCE - RATE_STEP):
+        return
+    try:
+        angles = np.column_stack(dead_centres(motion, load.on)[0])
+    except (ParameterError, NotGivenError):
+        return
+    distance = _turn_distance(peaks[:, None], angles[:, None]).min(axis=(1, 2))
+    far = np.flatnonzero(distance > MAX_PEAK_DISTANCE)
+    if far.size:
+        top, bottom = np.degrees(angles[far[0]]) % 360.0
+        yield (
+            f"{load.title}: the largest value of its table, {table.largest:.6g} N at {np.degrees(peaks[0]):.4g} deg, "
+            f"is {np.degrees(distance[far[0]]):.4g} deg from the dead centres of {load.on!r}, TDC at {top:.4g} deg and "
+            f'BDC at {bottom:.4g} deg; is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
+            "is the crank angle from +x"
+        )
+
+
+def _is_diagram(table):
+    """Whether a table over the angle has one short peak, and little of the other sign."""
+    x, (y,) = table.closed()
+    if not table.largest or (y / table.largest).min() < -MAX_SUCTION:
+        return False
+    above = np.interp(np.linspace(x[0], x[-1], 720), x, y / table.largest) > 0.5
+    return above.mean() * table.period < MAX_PEAK_WIDTH
+
+
+def _turn_distance(angle, other):
+    """Distance of crank angles within a turn, rad."""
+    return np.abs((angle - other + np.pi) % (2.0 * np.pi) - np.pi)
+
+
 def load_hints(mechanism, loads):
     """Yield a hint for each load between two points that acts on a cylinder, but not on its rod."""
     for load, slot, other in loads_beside_rods(mechanism, loads):
@@ -181,10 +254,14 @@ def _on_arms(mechanism):
 
 
 def _inertia(bar, link, crank):
-    """Hint on an improbable inertia for mass and length, or None; 0 means a point mass."""
-    if link is None or not (checks.has_known_values(link.mass) and checks.has_known_values(link.inertia)):
+    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass.
+
+    A link that goes on beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
+    """
+    if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None
-    inertia, unit = link.inertia, link.mass * bar.length * bar.length
+    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))
+    inertia, unit = link.inertia, link.mass * reach * reach
     if np.any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
     elif bar.link not in crank.links and np.any((inertia > LARGE_INERTIA_FACTOR * unit) & (unit > 0)):
@@ -198,7 +275,7 @@ def _inertia(bar, link, crank):
             advice = f"is it in {name}? That makes {factor * odd:.4g} kg m2"
     else:
         return None
-    rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(bar.length):.4g} m"
+    rod = f"a uniform rod of {np.max(link.mass):.4g} kg and {np.max(reach):.4g} m"
     return f"the inertia of the {bar.link}, {odd:.4g} kg m2, is {beside} that of {rod}; {advice}"
 
 

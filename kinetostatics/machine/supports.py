@@ -9,6 +9,7 @@ from collections import Counter
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
+from ..numbers.formatting import repr_with_units
 from ..numbers.planar import minus, subtract_vectors
 from .group import FRAME
 from .links import CamDriven, Rolling
@@ -27,6 +28,8 @@ class Support(NamedTuple):
     force: Any
     point: Any
     couple: Any = None
+
+    __repr__ = repr_with_units(force="N", point="m", couple="N m")
 
     def opposite(self):
         """The opposite force and couple at the same point."""

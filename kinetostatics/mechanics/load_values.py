@@ -35,6 +35,7 @@ MOTION_MEMBERS = (
     *(f"{name}(point)" for name in ("position", "velocity", "acceleration")),
     *(f"{name}(link)" for name in ("rate", "angular_acceleration")),
     *(f"{name}(slider)" for name in ("travel", "travel_velocity", "travel_acceleration")),
+    *("slider_position", "slider_velocity", "slider_acceleration", "elongation(free_position, slider)"),
     "measure(name)",
     "mechanism",
 )

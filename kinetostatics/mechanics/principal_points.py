@@ -19,6 +19,7 @@ from ..machine.group import FRAME
 from ..machine.links import acceleration_of, arm, first_at, present, second_at
 from ..machine.loads import Load, spring_masses
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..numbers.planar import add_vectors, plus, product, scale_vector
 
 
@@ -48,6 +49,8 @@ class PrincipalPoints:
     mass: Any
     static_moments: dict
     carried: dict
+
+    __repr__ = repr_with_units(mass="kg", static_moments="kg m", carried="kg")
 
     @property
     def moduli(self):

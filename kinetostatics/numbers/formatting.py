@@ -7,6 +7,7 @@ format their few numbers themselves, with six digits as here.
 import math
 import re
 import unicodedata
+from dataclasses import fields
 from decimal import ROUND_CEILING, Context, Decimal
 
 from . import checks
@@ -18,6 +19,8 @@ MAX_PLAIN_NUMBER = 1e9
 """Size below which a number has no power of ten."""
 ANGLE_DECIMALS = 3
 """Decimals of a crank angle in degrees: six digits of a full turn."""
+MAX_LISTED = 8
+"""Numbers of an array that the text of a result lists; of a longer one it gives the shape."""
 DIGITS_OF = {"ratio": 4, "share [%]": 4, "of total [%]": 4, "power residual": 2}
 """Significant digits of rough quantities, by column or row."""
 UNIT_SIGNS = {"m2": "m²", "m3": "m³", "s2": "s²", "m^2": "m²", "m^3": "m³", "s^2": "s²", "deg": "°"}
@@ -58,6 +61,38 @@ def number(value, digits=DIGITS, bound=0.0, infinity="inf"):
     text = f"{value:.{digits}g}"
     if "e+" in text and abs(value) < MAX_PLAIN_NUMBER:  # else the last figures before the point are zeros
         text = f"{value if whole else float(text):.0f}"
+    return text
+
+
+def plain(value, unit=""):
+    """A value of a result with its unit as text; numbers in tuples, dicts and short arrays too have `DIGITS` digits."""
+    if isinstance(value, dict):
+        text = f"{{{', '.join(f'{key!r}: {plain(part)}' for key, part in value.items())}}}"
+    elif isinstance(value, tuple) and not hasattr(value, "_fields"):
+        text = f"({', '.join(map(plain, value))}{',' * (len(value) == 1)})"
+    elif hasattr(value, "shape") and math.prod(value.shape) > MAX_LISTED:
+        text = f"<array of shape {value.shape}>"
+    elif getattr(value, "shape", ()):
+        text = f"[{', '.join(map(plain, value))}]"
+    elif isinstance(value, str | bool | int) or not hasattr(value, "__float__"):
+        return repr(value)
+    else:
+        text = number(value) or "nan"
+    return f"{text} {unit}" if unit not in ("", "1") else text
+
+
+def repr_with_units(**units):
+    """A `__repr__` for a dataclass or named tuple of results, with these SI units by field.
+
+    Fields that are None, or have ``repr=False``, are left out.
+    """
+
+    def text(result):
+        own = getattr(result, "_fields", None) or [field.name for field in fields(result) if field.repr]
+        values = ((name, getattr(result, name)) for name in own)
+        shown = [f"{name}={plain(found, units.get(name, ''))}" for name, found in values if found is not None]
+        return f"{type(result).__name__}({', '.join(shown)})"
+
     return text
 
 

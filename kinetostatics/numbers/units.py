@@ -31,6 +31,8 @@ _DIGITS = re.compile(r"[-+−–]?\d(?:[\d.,'’_\s]*\d)?")
 _SEPARATOR = re.compile(r"[.,'’_\s]")
 
 
+ALSO_TAKEN = {"N m s": "N m s/rad"}
+"""Unit with the angle that is accepted for a unit without it: of torsional dampers."""
 BASES = ("meter", "kilogram", "second", "radian")
 """Base units by pint's names."""
 _PREFIXES: dict[str, Fraction | int] = {"": 1, "k": 10**3, "M": 10**6, "m": Fraction(1, 10**3)}
@@ -123,7 +125,7 @@ def _spelling_examples(number, unit):
 def factor(given, unit):
     """Factor from a given unit to the SI unit; `ValueError` if it does not convert."""
     scale, base = _base(given, unit)
-    if base != _base(unit, unit)[1]:
+    if base not in (_base(unit, unit)[1], _base(ALSO_TAKEN.get(unit.replace("*", " "), unit), unit)[1]):
         raise ValueError(f'"{given}" does not measure the same as "{unit}"; give a unit that converts to it')
     return scale
 
@@ -142,6 +144,11 @@ def unit_of_quantity(quantity):
 def base_factor(given):
     """Factor from a given unit to SI base units."""
     return factor(given, given)
+
+
+def base_dimensions(unit):
+    """Powers of the base units in a unit, a frozenset of (name, power); `ValueError` for an unknown unit."""
+    return frozenset(_base(unit, unit)[1].items())
 
 
 @cache

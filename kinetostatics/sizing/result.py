@@ -6,6 +6,7 @@ from typing import ClassVar, NamedTuple
 
 from ..errors import HintWarning
 from ..numbers import formatting
+from ..numbers.output_units import output_units
 
 
 class Row(NamedTuple):
@@ -59,14 +60,17 @@ class Sized:
         )
         return f"<{type(self).__name__}: {', '.join(numbers)}{''.join(f'; {note}' for note in self.notes)}>"
 
-    def table(self):
-        """Value, unit, meaning and formula of each number, a pandas DataFrame; notes in ``attrs["notes"]``."""
+    def table(self, units=None):
+        """Value, unit, meaning and formula of each number, a pandas DataFrame; notes in ``attrs["notes"]``.
+
+        `units` is a dict of dimension to unit as of `in_units`.
+        """
         import pandas as pd
 
         rows = [(name, float(getattr(self, name)), *row) for name, row in self.ROWS.items()]
         found = pd.DataFrame(rows, columns=["number", "value", *Row._fields]).set_index("number")
         found.attrs["notes"] = list(self.notes)
-        return found
+        return output_units(units, "table").table(found)
 
 
 def warn_of_notes(owner, result, stacklevel=3):

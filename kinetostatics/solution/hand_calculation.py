@@ -14,10 +14,8 @@ from ..explain.named_recording import name_result, node_of, record_with_names
 from ..explain.steps import lines
 from ..machine import plausibility
 from ..mechanics import quantities
-from ..mechanics.motion import SceneParts
 from ..numbers import checks
-from ..numbers.parameter_tree import map_numbers
-from .parameters import crank_angles, leaf_by_path, tables_over_angles
+from .parameters import crank_angles, leaf_by_path, of_design, tables_over_angles
 
 
 def explain(solution, quantity, angle, design=None):
@@ -80,20 +78,10 @@ def _alone(solution, angle, design):
     asked = float(asked.reshape(()))
     for hint in plausibility.single_angle_hints(asked):
         warnings.warn(HintWarning(solution.mechanism.name, hint), stacklevel=4)
-    batch = solution.shape[:-1]
-    place = _design(batch, design)
+    place = _design(solution.shape[:-1], design)
     index = _index(solution, asked, place)
 
-    def number(leaf):
-        if not np.ndim(leaf):
-            return float(leaf)
-        if np.shape(leaf)[-1] == 1:
-            return float(np.broadcast_to(leaf, (*batch, 1))[place][0])
-        fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
-        return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
-
-    parts = {name: map_numbers(getattr(solution, name), number) for name in SceneParts._fields}
-    return replace(solution, **parts, crank_angle=np.array(asked), engine=NUMPY).check()
+    return replace(of_design(solution, place, index), crank_angle=np.array(asked), engine=NUMPY).check()
 
 
 def _design(batch, design):

@@ -6,6 +6,7 @@ axis, is absent from the recorded program unless it is kept. Implausible numbers
 
 import math
 import warnings
+from dataclasses import replace
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -15,11 +16,20 @@ from ..errors import HintWarning, ParameterError
 from ..machine import plausibility
 from ..machine.loads import value_of
 from ..machine.mechanism import Mechanism
+from ..mechanics.motion import SceneParts
 from ..numbers import checks, paths
 from ..numbers.arithmetic import read_only
 from ..numbers.checks import PlausibleRange, plausible_range_of
 from ..numbers.lazy import cached_property
-from ..numbers.parameter_tree import Axis, KeptZero, LeafIndex, construct_unchecked, replace_unchecked, unflatten
+from ..numbers.parameter_tree import (
+    Axis,
+    KeptZero,
+    LeafIndex,
+    construct_unchecked,
+    map_numbers,
+    replace_unchecked,
+    unflatten,
+)
 
 DRIVE = checks.Rules(
     "drive", crank_speed=checks.Number("rad/s", table=True), crank_acceleration=checks.Number("rad/s**2", table=True)
@@ -102,6 +112,24 @@ def drive_and_loads_text(item):
     friction = f", friction at {', '.join(item.friction)}" if item.friction else ""
     sense = "" if item.sense is None else f", sense={shown(item.sense)}"
     return f"{drive}{sense}, {loads}{friction}"
+
+
+def of_design(solution, place, index=None):
+    """The solution of one design of a batch, by its index `place`, unchecked.
+
+    Drive and loads that are tables over the crank angles get their values at the angle with this `index`, if given.
+    """
+    batch = solution.shape[:-1]
+
+    def number(leaf):
+        if not np.ndim(leaf):
+            return float(leaf)
+        if np.shape(leaf)[-1] == 1:
+            return float(np.broadcast_to(leaf, (*batch, 1))[place][0])
+        fits = index is not None and np.shape(leaf)[-1] == solution.shape[-1]
+        return float(np.broadcast_to(leaf, solution.shape)[place][index]) if fits else leaf
+
+    return replace(solution, **{name: map_numbers(getattr(solution, name), number) for name in SceneParts._fields})
 
 
 # Numbers by path
@@ -256,5 +284,6 @@ def plausibility_hints(solution):
     return (
         *plausibility.scene_hints(mechanism, solution.crank_speed, numbers),
         *plausibility.load_hints(mechanism, solution.loads),
+        *plausibility.table_hints(solution),
         *plausibility.spring_hints(mechanism, solution.loads, solution.crank_speed),
     )

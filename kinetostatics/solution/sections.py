@@ -21,6 +21,7 @@ from ..errors import ConditionWarning
 from ..machine.cams.profile import POSITIVE
 from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
 from ..numbers import checks
+from ..numbers.formatting import repr_with_units
 from ..numbers.lazy import cached_property
 from ..numbers.planar import cross, dot
 
@@ -106,6 +107,8 @@ class SectionPeak(NamedTuple):
     value: float
     x: float
     angle: float
+
+    __repr__ = repr_with_units(x="m", angle="rad")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

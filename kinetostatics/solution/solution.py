@@ -30,6 +30,7 @@ from ..numbers.arithmetic import read_only
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import construct_unchecked, replace_unchecked
 from .certainty import Certainty
+from .columns import ByName
 from .condition import condition, is_surely_well_conditioned, warn_of_lost_digits
 from .crankshaft import CrankshaftResults
 from .ground import Ground
@@ -40,6 +41,7 @@ from .parameters import (
     require_known_between_angles,
     scene_plausibility_test,
 )
+from .period_means import PeriodMeans
 from .sections import WithSections
 
 MAX_VALUES_TOGETHER = 100_000
@@ -61,14 +63,15 @@ def _scalar(name, text):
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Certainty, WithSections, CrankshaftResults, Motion):
+class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, Motion):
     """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
 
     Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
     counter-clockwise from +x. Arrays end with the crank angles, N of them; batch axes of designs come before: (..., N).
     A vector has (x, y) as its first axis: (2, ..., N).
 
-    A group's `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup`
+    ``s[name]`` gives each result by its name, `quantities` lists all: ``s["guide_force"]``, ``s["O"]``. A group's
+    `label` ends the names of its links and forces: "coupler2", "slider2", "guide_force2" of a `SliderGroup`
     with ``label="2"``; its `pin` and `pivot_name` name its joints. `reactions` and `scalars` list all names. Where the
     mechanism does not close, `solve` raises, or with ``on_gap="nan"`` gives NaN for the open group, groups attached to
     it, and forces of groups that carry it.
@@ -89,9 +92,10 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     resolution : float
         Step of crank angles at which load functions without `kinks` are sampled, rad.
     shape, period, crank_sense, closed, closure, gravity
-    reactions, scalars
+    reactions, scalars, quantities
     slider_position, slider_velocity, slider_acceleration, pressure_angle
-    balancing_torque, balancing_torque_by_power, power_residual, load_torque, energy_per_turn
+    balancing_torque, balancing_torque_by_power, power_residual, load_torque
+    mean_torque, mean_power, energy_per_turn
     guide_force, guide_moment, guide_friction, cam_force, slot_force, contact_pressure
     shaking_force, shaking_moment, rocking_moment, ground
     reduced_inertia, reduced_inertia_slope, kinetic_energy, potential_energy
@@ -107,7 +111,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     travel(slider), travel_velocity(slider), travel_acceleration(slider), elongation(free_position, slider)
     measure(name), at(crank_angle)
     condition_of(quantity), error_bound(quantity, tight), uncertainty(quantity, inputs)
-    explain(quantity, angle, design), shares(quantity), sections(link, bar, at), frame()
+    explain(quantity, angle, design), shares(quantity), sections(link, bar, at), frame(units)
 
     Notes
     -----
@@ -361,13 +365,6 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     potential_energy = _member("potential_energy")
     load_torque = _member("load_torque")
 
-    @cached_property
-    def energy_per_turn(self):
-        """Work of the balancing torque in a turn of the crank, J; of one design."""
-        from ..cycle.means import energy_per_turn
-
-        return energy_per_turn(self)
-
     @property
     def ground(self):
         """Forces and couples of the machine on the frame, by place, a `Ground`."""
@@ -399,13 +396,6 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
     friction_torque = _member("friction_torque")
     friction_margin = _member("friction_margin")
     friction_residual = _member("friction_residual")
-
-    @cached_property
-    def losses(self):
-        """Mean powers over the period, lost by joint and taken by loads, a `cycle.losses.Losses`; of one design."""
-        from ..cycle.losses import losses
-
-        return losses(self)
 
     def shares(self, quantity):
         """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
@@ -439,11 +429,6 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
         from .shares import shares
 
         return shares(self, quantity)
-
-    @property
-    def efficiency(self):
-        """Mechanical efficiency over the period: work taken by loads over work taken by loads and lost at joints."""
-        return self.losses.efficiency
 
     @property
     def converged(self):
@@ -543,11 +528,11 @@ class Solution(Certainty, WithSections, CrankshaftResults, Motion):
 
         return explain(self, quantity, angle, design)
 
-    def frame(self):
-        """All results as a pandas DataFrame, one row for each crank angle (and design), units in the column names."""
+    def frame(self, units=None):
+        """All results, one row for each crank angle (and design), a pandas DataFrame in `units` as of `in_units`."""
         from .tables import solution_frame
 
-        return solution_frame(self)
+        return solution_frame(self, units)
 
     # How a quantity is asked of the engine
 

@@ -15,15 +15,16 @@ from ..mechanics.assembly import NO_DIGITS_CONDITION
 from ..mechanics.quantities import LOAD_FREE_KINDS, of_scene
 from ..numbers import paths
 from ..numbers.formatting import number, round_uncertainty_up
+from ..numbers.output_units import output_units
 from .certainty import Doubt, doubt_text
+from .columns import columns_of
 from .parameters import Parameters
 
-COLUMN_ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", "motion")
-"""Order of kinds of quantities in the table, after the positions of joints; energies are left out."""
 
-
-def solution_frame(solution):
+def solution_frame(solution, units=None):
     """One row for each crank angle (and design), units in the column names, as a pandas DataFrame.
+
+    `units` is a dict of dimension to unit as of `in_units`.
 
     Warns
     -----
@@ -33,23 +34,15 @@ def solution_frame(solution):
     import pandas as pd
 
     _warn_of_rows_without_digits(solution)
-    rows = [(joint, "m", solution.position(joint)) for joint in solution.placement.joints]
-    quantities = ((name, item) for name, item in of_scene(solution).items() if item.kind in COLUMN_ORDER)
-    for name, quantity in sorted(quantities, key=lambda pair: COLUMN_ORDER.index(pair[1].kind)):
-        if quantity.kind != "rate" or solution.placement.links[quantity.owner].ratio is not None:
-            name = f"reaction_{name}" if quantity.kind == "reaction" else name
-            values = quantity.read(solution)
-            rows.append((name, quantity.unit, values if quantity.vector else [values]))
-    columns = {"crank_angle [deg]": np.degrees(solution.crank_angle)}
-    for name, unit, parts in rows:
-        endings = ("_x", "_y") if len(parts) == 2 else ("",)
-        columns |= {f"{name}{ending} [{unit}]": part for ending, part in zip(endings, parts, strict=True)}
+    columns: dict[str, np.ndarray] = {}
+    for item in columns_of(solution):
+        columns |= zip(item.headings, item.values(solution), strict=True)
     shape = np.broadcast_shapes(*(np.shape(values) for values in columns.values()))
     table = pd.DataFrame({name: np.broadcast_to(values, shape).ravel() for name, values in columns.items()})
     if len(shape) > 1:
         designs = np.prod(shape[:-1], dtype=int)
         table.insert(0, "design", np.repeat(np.arange(designs), shape[-1]))
-    return table
+    return output_units(units, "frame").table(table)
 
 
 def _warn_of_rows_without_digits(solution):

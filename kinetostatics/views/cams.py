@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.patches import Circle
 
 from ..numbers import checks
+from ..numbers.output_units import shown_units
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
 
 POINTS_PER_TURN = 1440
@@ -22,8 +23,8 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
 
     Parameters
     ----------
-    cam : Cam
-        One of ``ks.cams``.
+    cam : Cam or mapping of label to Cam
+        Of ``ks.cams``. Several get a panel each.
     roller_radius : float
         m.
     side : "disk" or "ring"
@@ -192,9 +193,10 @@ def law_motion(laws, ax=None):
         "law_motion", None if ax is None or len(np.ravel(ax)) == 4 else f"ax must be 4 Axes, got {checks.shown(ax)}"
     )
     four: Any = plt.subplots(4, 1, sharex=True, layout="constrained", figsize=(6.4, 7.2))[1] if ax is None else ax
+    factor, unit = shown_units().of("m")
     for order, part in enumerate(four):
-        draw_each_over_turn(part, named, lambda law, angle, order=order: law(angle)[order], 2 * POINTS_PER_TURN)
-    texts = ("position [m]", "velocity [m/rad]", "acceleration [m/rad²]", "jerk [m/rad³]")
+        draw_each_over_turn(part, named, lambda law, angle, at=order: factor * law(angle)[at], 2 * POINTS_PER_TURN)
+    texts = (f"position [{unit}]", f"velocity [{unit}/rad]", f"acceleration [{unit}/rad²]", f"jerk [{unit}/rad³]")
     for part, text in zip(four, texts, strict=True):
         part.set_ylabel(text)
     _label_axes(four[-1], texts[-1], False)

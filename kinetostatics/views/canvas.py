@@ -19,6 +19,7 @@ from ..mechanics.quantities import label_of
 from ..numbers import checks
 from ..numbers.files import write_atomically
 from ..numbers.formatting import parse_heading
+from ..numbers.output_units import dimension_name, shown_units
 from ..solution.parameters import tables_over_angles
 
 
@@ -221,13 +222,16 @@ def drawn_limit(arrays):
 
 
 def display_unit(name, arrays):
-    """Factor and unit for readable numbers."""
+    """Factor and unit for readable numbers: the unit that the user chooses, else one by the size of the values."""
+    factor, chosen = shown_units().of(name)
+    if dimension_name(name) in shown_units().chosen:
+        return factor, chosen
     if name == "rad":
         return 180 / np.pi, "deg"
     largest = ordinary_size(list(arrays))
     if name == "Pa" and largest >= 1e5:
         return 1e-6, "MPa"
-    return (1e-3, f"k{name}") if name in ("N", "N m", "W") and largest >= 1e4 else (1.0, name)
+    return (1e-3, f"k{name}") if name in ("N", "N m", "W", "J") and largest >= 1e4 else (1.0, name)
 
 
 def close_curve(curve):

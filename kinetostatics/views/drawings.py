@@ -99,9 +99,20 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     angles = np.atleast_1d(checks.check_values("mechanism", ANGLES_RULE, {"angles": angles})["angles"])
     checks.require("mechanism", None if angles.ndim == 1 else f"angles must be a row of numbers, got {angles}")
     named, ax = solutions_by_label(solutions, ""), axes(ax)
+    shades = np.linspace(1.0, 0.3, len(angles))
+    poses = draw_poses(ax, named, angles, shades)
+    moving = [poses.position(name) for name, point in poses.mechanism.joints.items() if point.link != FRAME]
+    gaps = np.any(np.isnan(moving), axis=(0, 1))
+    for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
+        text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
+        label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=shade)
+    return ax
+
+
+def draw_poses(ax, named, angles, shades):
+    """Draw machines by label at crank angles, degrees, each pose in a shade; returns the motion of the first."""
     solution = next(iter(named.values()))
     shape, poses = draw_fixed_parts(ax, solution), at_angles(solution, angles)
-    shades = np.linspace(1.0, 0.3, len(angles))
     strokes = list(shape.strokes(poses))
     owned = strokes_by_owner(named, angles[:1])
     once = [stroke for stroke, owners in owned if len(owners) == len(named)]
@@ -117,14 +128,10 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     places = {name: poses.position(name)[:, 0] for name in shape.mechanism.joints}
     for names in grouped(places, lambda one, other: np.hypot(*(places[other] - places[one])) < 1e-6 * shape.size):
         label(ax, ", ".join(names), places[names[0]], color=INK, fontsize="small")
-    gaps = np.any([np.isnan(poses.position(name)[0]) for name in moving], axis=0)
-    for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
-        text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
-        label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=shade)
     _draw_own(ax, [(stroke, owners) for stroke, owners in owned if len(owners) < len(named)])
     _draw_gravity(ax, solution.dynamics.gravity)
     set_equal_scales(ax, [point - [0.0, GROUND_DEPTH * shape.unit] for point in shape.grounds(solution.loads)])
-    return ax
+    return poses
 
 
 def _draw_gravity(ax, gravity):

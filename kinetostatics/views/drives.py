@@ -27,7 +27,7 @@ def crank_speed(runs, ax=None):
 
     Parameters
     ----------
-    runs : mapping of label to Running
+    runs : Running or mapping of label to Running
         As of `ks.drive.steady`.
     ax : Axes, optional
 
@@ -40,13 +40,13 @@ def crank_speed(runs, ax=None):
     >>> ks.plots.crank_speed(runs).get_xlabel()
     'crank angle from +x, counter-clockwise [deg]'
     """
-    _require_running(runs)
-    ax = axes(ax)
+    runs, ax = _runs_by_label(runs, "crank speed"), axes(ax)
+    factor, unit = display_unit("rad/s", [run.speed for run in runs.values()])
     for name, run, style in with_line_styles(runs):
-        (line,) = ax.plot(*_closed_curve(run, run.speed), linestyle=style, label=name)
-        ax.axhline(run.mean_speed, color=line.get_color(), lw=0.8, ls=":")
+        (line,) = ax.plot(*_closed_curve(run, factor * run.speed), linestyle=style, label=name)
+        ax.axhline(factor * run.mean_speed, color=line.get_color(), lw=0.8, ls=":")
     ax.plot([], [], color=INK, lw=0.8, ls=":", label="mean over time")
-    ax.set_ylabel("crank speed [rad/s]")
+    ax.set_ylabel(f"crank speed [{unit}]")
     return _finish(ax, runs.values())
 
 
@@ -55,8 +55,8 @@ def drive_torques(run, ax=None):
 
     Parameters
     ----------
-    run : Running
-        As of `ks.drive.steady`.
+    run : Running or mapping of label to Running
+        As of `ks.drive.steady`; several get a panel each.
     ax : Axes, optional
 
     Examples
@@ -67,7 +67,7 @@ def drive_torques(run, ax=None):
     >>> ks.plots.drive_torques(ks.drive.steady(pump, motor, flywheel=0.05)).get_xlabel()
     'crank angle from +x, counter-clockwise [deg]'
     """
-    _require_running({"run": run})
+    _runs_by_label({"run": run}, "run")
     ax = axes(ax)
     ratio = 1.0 if run.motor is None else run.motor.transmission
     curves = {
@@ -89,7 +89,7 @@ def energy_flow(runs, ax=None):
 
     Parameters
     ----------
-    runs : mapping of label to Running
+    runs : Running or mapping of label to Running
         As of `ks.drive.steady`.
     ax : Axes, optional
 
@@ -102,12 +102,11 @@ def energy_flow(runs, ax=None):
     >>> ks.plots.energy_flow(runs).get_xlabel().split("[")[0]
     'energy per turn '
     """
-    _require_running(runs)
-    ax = axes(ax)
+    runs, ax = _runs_by_label(runs, "run"), axes(ax)
     shown = energy_parts(runs)
     flows = [{part.name: part.energy for part in run.energy_flow.parts} for run in runs.values()]
     energies = np.array([[flow.get(part, 0.0) for part in shown] for flow in flows])
-    factor, unit = (1e-3, "kJ") if np.max(np.abs(energies), initial=0.0) >= 1e4 else (1.0, "J")
+    factor, unit = display_unit("J", [energies])
     height = 0.8 / len(runs)
     for row, (name, values) in enumerate(zip(runs, factor * energies, strict=True)):
         places = np.arange(len(shown)) + (row - 0.5 * (len(runs) - 1)) * height
@@ -132,13 +131,13 @@ def energy_parts(runs):
     return [name for name in parts if name in moving]
 
 
-def _require_running(runs):
-    """Raise an error unless `runs` is a mapping of label to Running."""
-    wanted = 'runs must be a dict of label to Running, as {"saw": ks.drive.steady(scene, motor)}'
-    several = isinstance(runs, Mapping) and runs
-    wrong = [name for name, run in runs.items() if not isinstance(run, Running)] if several else []
-    given = f"{checks.shown(runs[wrong[0]])} for {wrong[0]!r}" if wrong else checks.shown(runs)
-    checks.require("plots", None if several and not wrong else f"{wanted}, got {given}")
+def _runs_by_label(runs, name):
+    """The mapping of label to Running, or a single one by a name; an error for anything else."""
+    wanted = 'runs must be a Running or a dict of label to Running, as {"saw": ks.drive.steady(scene, motor)}'
+    named = runs if isinstance(runs, Mapping) else {name: runs}
+    wrong = [run for run in named.values() if not isinstance(run, Running)]
+    checks.require("plots", f"{wanted}, got {checks.shown((wrong or [runs])[0])}" if wrong or not named else None)
+    return named
 
 
 def _closed_curve(run, values):
@@ -161,8 +160,8 @@ def lost_power(solution, ax=None):
 
     Parameters
     ----------
-    solution : Solution
-        With friction, a damper or drag; of one design.
+    solution : Solution or mapping of label to Solution
+        With friction, a damper or drag; of one design. Several get a panel each.
     ax : Axes, optional
 
     Examples

@@ -20,7 +20,9 @@ from ..mechanics.quantities import of_mechanism
 from ..numbers import checks
 from ..numbers.files import write_problem
 from ..numbers.formatting import parse_heading
+from ..numbers.paths import places_by_path
 from . import curves, drawings, drives
+from .axis_units import scale_axes
 from .cams import draw_each_over_turn
 from .canvas import (
     ACCENT,
@@ -42,6 +44,7 @@ from .curves import torque
 from .drawings import mechanism
 from .hodographs import hodograph
 from .mass_centres import mass_centres
+from .sketches import sketch
 from .strokes import load_strokes, moves_alike
 
 FONT: Any = {"font.size": 9}
@@ -117,7 +120,9 @@ def _draw_pages(case, pages, folder, file_format, progress=iter):
     found = []
     for name in progress(paths):
         with rc_context(FONT):
-            found.append(save_figure(pages[name](), paths[name], case.path.stem))
+            figure = pages[name]()
+            scale_axes(figure.axes)
+            found.append(save_figure(figure, paths[name], case.path.stem))
     return found
 
 
@@ -197,6 +202,19 @@ def _mechanisms(solutions, counted=FROM_X) -> Figure:
     return _one_each(plot, shown, width, width / wide + TITLE_HEIGHT, 1 if wide > WIDE_RATIO else 2)
 
 
+def _sketches(solutions, _) -> Figure:
+    """Dimensioned sketches of all variants; those with the same numbers share one."""
+    numbers = {name: _numbers_of(solution.mechanism) for name, solution in solutions.items()}
+    alike = grouped(solutions, lambda name, other: numbers[name] == numbers[other])
+    wide = max(map(_proportion, solutions.values()))
+    height = float(np.clip(7.0 / wide, 2.4, 5.6)) + TITLE_HEIGHT
+    return _one_each(sketch, {", ".join(group): solutions[group[0]] for group in alike}, 7.0, height, 1)
+
+
+def _numbers_of(mechanism):
+    return {path: float(np.ravel(place.value(mechanism))[0]) for path, place in places_by_path(mechanism).items()}
+
+
 DRAWN_ANGLES = (40.0, 160.0, 280.0)
 """Crank angles at which mechanisms are drawn, degrees."""
 WIDE_RATIO = 1.7
@@ -239,6 +257,7 @@ def _overview(solutions, counted=FROM_X) -> Figure:
 FIGURES = {
     "overview": (_overview, None),
     "mechanism": (_mechanisms, None),
+    "sketch": (_sketches, None),
     "torque": (_over_turn("balancing_torque"), None),
     "acceleration_error": (_page_of(curves.acceleration_error), "cosine law"),
     "hodograph": (_hodographs, None),

@@ -30,8 +30,8 @@ def shares(solution, quantity, ax=None):
 
     Parameters
     ----------
-    solution : Solution
-        Of one design.
+    solution : Solution or mapping of label to Solution
+        Of one design. Several get a panel each.
     quantity : str
         As for `Solution.shares`: "O", "balancing_torque" ...
     ax : Axes, optional
@@ -107,8 +107,8 @@ def free_body(solution, link, angle, ax=None):
 
     Parameters
     ----------
-    solution : Solution
-        Of one design.
+    solution : Solution or mapping of label to Solution
+        Of one design. Several get a panel each.
     link : str
         "crank", "coupler", "slider" ...
     angle : float

@@ -10,12 +10,12 @@ from matplotlib.transforms import Bbox, IdentityTransform
 
 DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
 """Directions from a point to its label, in order of preference."""
-DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0)
+DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0, 54.0, 76.0)
 """Distances between a point and the nearest side of its label, in typographic points."""
 LEADER_DISTANCE = 14.0
 """Distance from which on a leader line connects label and point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
-"""Costs of a label on another label, a point, a curve, and outside the axes; a greater distance costs up to 1."""
+"""Costs of a label on another label, a point, a curve, and outside the axes; each place farther away costs 1/40."""
 PLACEMENT_ROUNDS = 3
 """Rounds of placement: in the first, labels avoid earlier ones, then all others."""
 
@@ -92,7 +92,7 @@ def _in_pixels(item):
     return item.get_transform().transform_path(item.get_path())
 
 
-DISTANCE_COSTS = np.linspace(0.0, 1.0, len(DISTANCES) * len(DIRECTIONS))
+DISTANCE_COSTS = np.arange(len(DISTANCES) * len(DIRECTIONS)) / 40.0
 
 
 class _Places(NamedTuple):
@@ -133,7 +133,7 @@ class _Places(NamedTuple):
     def met(self, others):
         """Costs of each place for overlap with other labels and their leaders, (P,)."""
         others_boxes = np.array([box for _, box, _ in others]).reshape(-1, 4)
-        count = _overlap(self.boxes, others_boxes).sum(axis=1)
+        count = 2 * _overlap(self.boxes, others_boxes).sum(axis=1)  # worse than a leader that is crossed
         for _, other, line in others:
             for place in np.flatnonzero(_overlap(self.reaches, other[None])[:, 0]):
                 count[place] += self.leaders[place].intersects_bbox(Bbox.from_extents(other), filled=False)

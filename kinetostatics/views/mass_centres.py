@@ -82,8 +82,8 @@ def principal_points(mechanism, angle=60, before=None, ax=None):
 
     Parameters
     ----------
-    mechanism : Mechanism
-        Of one design.
+    mechanism : Mechanism, Solution or mapping of label to one
+        Of one design. Several get a panel each. With a solution the masses of its springs count too.
     angle : float
         Crank angle of the drawing, degrees.
     before : Mechanism, optional
@@ -113,16 +113,18 @@ def principal_points(mechanism, angle=60, before=None, ax=None):
     """
     angle = checks.single_numbers("principal_points", angle=(angle, "deg", {}))["angle"]
     given = {"mechanism": mechanism} | ({} if before is None else {"before": before})
+    loads = {name: getattr(item, "loads", ()) for name, item in given.items()}
+    given = {name: getattr(item, "mechanism", item) for name, item in given.items()}
     checks.require("principal_points", *(checks.mechanism(name, item) for name, item in given.items()))
-    pose = solve(mechanism, np.radians([angle]), crank_speed=1.0)
+    pose = solve(given["mechanism"], np.radians([angle]), crank_speed=1.0)
     ax = drawings.mechanism(pose, angles=(angle,), ax=ax)
-    points = points_of(mechanism)
+    points = points_of(given["mechanism"], loads["mechanism"])
     corners = np.concatenate(points.contour(pose), axis=-1)
     _draw_points(ax, pose, points.vectors(pose))
     ax.plot(*corners, color=ACCENT, lw=1.0, ls="--", marker=".", ms=3, zorder=5, label="contour of the vectors h")
     for name, item in given.items():
         turn = whole_turn(single_solution(solve(item, [0.0], crank_speed=1.0, on_gap="nan")))
-        path = points_of(item).mass_centre(turn)
+        path = points_of(item, loads[name]).mass_centre(turn)
         ax.plot(*path, zorder=5, **PATHS[name])
     ax.plot(*corners[:, -1], marker="o", ms=6, color=ACCENT, zorder=6.5)
     label(ax, "S", corners[:, -1], color=ACCENT, fontsize="small")

@@ -174,6 +174,44 @@ def test_process_force_table_takes_indicator_diagram(tmp_path):
     agree(variant.scene, ks.Scene(variant.mechanism, rpm(60), loads=LOADS["indicator diagram"][2]))
 
 
+AFTER_TDC = "crank_angle [deg], pressure [bar]\n0, 20\n15, 40\n90, 5\n180, 0\n270, 2\n"
+
+
+@every(
+    ("keys", "options"),
+    [
+        ('zero = "TDC"', {"zero": "TDC"}),
+        ('zero = "TDC", sense = -1', {"zero": "TDC", "sense": -1}),
+        ('zero = "BDC", slider = "slider"', {"zero": "BDC", "slider": "slider"}),
+        ('zero = "90 deg", sense = 1', {"zero": np.pi / 2}),
+    ],
+)
+def test_the_table_of_a_process_force_has_a_zero_and_a_sense(tmp_path, keys, options):
+    angles, pressures = np.radians([0.0, 15.0, 90.0, 180.0, 270.0]), np.array([20.0, 40.0, 5.0, 0.0, 2.0])
+    (tmp_path / "t.csv").write_text(AFTER_TDC, encoding="utf-8")
+    text = PUMP + f'process_force = {{ force = {{ file = "t.csv", area = "-10 cm^2", {keys} }} }}\n'
+    text = text.replace("60 rpm", f"{60 * options.get('sense', 1)} rpm")
+    variant = ks.load_case(case_file(tmp_path, text)).variant("loaded")
+    gas = ks.ProcessForce(ks.Table(angles, -100.0 * pressures, **options))
+    agree(variant.scene, ks.Scene(variant.mechanism, rpm(60 * options.get("sense", 1)), loads=gas))
+
+
+@every(
+    ("keys", "message"),
+    [
+        ('zero = "OT"', "zero must be text of a number and a unit"),
+        ('zero = "OT"', 'or write "TDC" or "BDC"'),
+        ("sense = 2", "sense must be 1 or -1, found 2"),
+    ],
+)
+def test_what_is_no_zero_or_sense_is_named(tmp_path, keys, message):
+    (tmp_path / "t.csv").write_text(AFTER_TDC, encoding="utf-8")
+    text = PUMP + f'process_force = {{ force = {{ file = "t.csv", area = "-10 cm^2", {keys} }} }}\n'
+    (problem,) = problems(tmp_path, text)
+    assert problem.startswith("variants.loaded.process_force.force.")
+    assert message in problem
+
+
 @pytest.mark.parametrize(
     "text",
     [

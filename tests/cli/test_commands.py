@@ -32,6 +32,7 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     row = next(line for line in printed.splitlines() if line.startswith("balancing torque  "))
     assert row.split()[-4:] == ["-40237.5", "320.632", "40578.9", "39.289"]  # each extremum beside its angle
     assert "power balance: the torques by equilibrium and by powers differ by" in printed
+    assert "drive, exact means over the period: torque 0 N m, power 0 W; energy per turn 0 J" in printed
     assert "cam" not in printed.split("plain: crank-slider")[1]
 
 
@@ -79,7 +80,8 @@ def test_run_writes_all_variants_to_csv_with_units(tmp_path, capsys):
 def test_plot_writes_each_figure_of_the_case(tmp_path, capsys):
     assert main(["plot", "sawframe_2r63", "--out", str(tmp_path)]) == 0
     written = sorted(path.name for path in tmp_path.iterdir())
-    names = ["acceleration_error", "cam_force", "hodograph", "mechanism", "overview", "pressure_angle", "torque"]
+    names = ["acceleration_error", "cam_force", "hodograph", "mechanism", "overview"]
+    names += ["pressure_angle", "sketch", "torque"]
     compared = [f"sawframe_2r63_{group}{name}.png" for group in ("", "upright-plain_") for name in names]
     assert written == sorted(compared)
     assert len(capsys.readouterr().out.splitlines()) == len(compared)

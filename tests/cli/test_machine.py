@@ -26,6 +26,9 @@ def test_json_of_run_has_the_true_extremes(capsys):
     assert told["extremes"]["balancing_torque"]["largest"] == ks.extremes(solution, "balancing_torque").largest
     assert told["extremes"]["balancing_torque"]["unit"] == "N m"
     assert told["power_residual"] == solution.power_residual
+    assert told["drive"]["mean_torque [N m]"] == solution.mean_torque
+    assert told["drive"]["mean_power [W]"] == solution.mean_power
+    assert told["drive"]["energy_per_turn [J]"] == solution.energy_per_turn
     assert told["losses"]["lost [W]"] == solution.losses.total
     assert told["losses"]["at"]["guide"]["mean [W]"] == solution.losses.friction["guide"]
 

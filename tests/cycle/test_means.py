@@ -9,7 +9,7 @@ import kinetostatics as ks
 from kinetostatics.cycle.means import (
     _mean_of_absolute_torque,
     closed_turn,
-    energy_per_turn,
+    drive_means,
     mean_absolute_torque,
     mean_absolute_torque_errors,
     means,
@@ -37,7 +37,7 @@ def test_the_mean_is_that_of_calculus(name):
     assert error[0] < 1e-10
 
 
-@pytest.mark.parametrize("of", [mean_absolute_torque, energy_per_turn])
+@pytest.mark.parametrize("of", [mean_absolute_torque, drive_means])
 def test_jamming_leaves_no_mean(of):
     solution = ks.solve(
         ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0)), 0.3, crank_speed=3.0, friction={"guide": ks.GuideFriction(0.9)}

@@ -88,13 +88,15 @@ def test_tables_are_written_to_files_beside_it(tmp_path):
     follower = ks.Mechanism("bare", ks.Crank(None), (ks.CamRoller(cam, ks.Link(2.0)),))
     pump = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))
     loads = [ks.Gravity(), ks.ProcessForce(TWO_TURNS, period=4 * np.pi), ks.Torque(TWO_TURNS, on="coupler")]
+    after_tdc = ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [-3.0, -7.0, -1.0], zero="TDC", sense=-1))
     scenes = {
+        "engine": ks.Scene(pump, -10.0, loads=after_tdc),
         "cam": ks.Scene(follower, 10.0),
         "two turns": ks.Scene(pump, 10.0, loads=loads),
         "diagram": ks.Scene(pump, 10.0, loads=ks.ProcessForce(DIAGRAM)),
     }
     read = ks.load_case(case_text.write_case(tmp_path / "made.toml", "Made", scenes))
-    files = {"cam_cam", "two-turns_load_1", "two-turns_load_2", "diagram_load_1"}
+    files = {"engine_load_1", "cam_cam", "two-turns_load_1", "two-turns_load_2", "diagram_load_1"}
     assert {path.stem.removeprefix("made_") for path in tmp_path.glob("*.csv")} == files
     for name, scene in scenes.items():
         one, other = scene.solve(360), read.variant(name).scene.solve(360)

@@ -75,7 +75,7 @@ def test_first_page_goes_from_drawing_to_forces(tmp_path, monkeypatch, capsys):
 
 def test_the_first_page_counts_its_lines():
     written = re.search(r"(\w+) lines of code", text_of(PAGES["index"]))[1]
-    assert written == "Fifteen"
+    assert written == "fifteen"
 
 
 def test_certainty_page_says_what_its_code_finds(capsys):

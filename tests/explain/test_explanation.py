@@ -101,6 +101,15 @@ def test_the_stroke_of_a_cut_is_told_at_its_dead_centres():
     assert "crank angle of the far dead centre" in " ".join(str(told).split())
 
 
+def test_a_table_from_a_dead_centre_is_read_at_the_angle_from_it():
+    gas = ks.ProcessForce(ks.Table([0.0, 2.0, 4.0], [-9e3, -1e3, 0.0], zero="TDC"))
+    machine = ks.crank_slider(0.05, 0.2, guide_angle=1.3)
+    told = ks.solve(machine, 0.0, crank_speed=1.0, loads=gas).explain("balancing_torque", 2.0)
+    text = " ".join(str(told).split())
+    assert "crank angle of the dead centre at which the table begins" in text
+    assert "(phi - phi_0_process_force - start_process_force)" in text
+
+
 def test_absent_terms_are_zero_without_a_step():
     told = PUMP.explain("crank_angular_acceleration", ANGLE)
     assert told.value == 0.0

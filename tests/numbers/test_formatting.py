@@ -11,7 +11,7 @@ import kinetostatics as ks
 from kinetostatics.errors import CaseError
 from kinetostatics.numbers import spreads
 from kinetostatics.numbers.files import headings, read_columns, read_text, write_atomically
-from kinetostatics.numbers.formatting import angle, number, pretty_unit, round_bound_up, si_columns
+from kinetostatics.numbers.formatting import angle, number, plain, pretty_unit, round_bound_up, si_columns
 from support.every import every
 
 
@@ -23,6 +23,45 @@ from support.every import every
 ])  # fmt: skip
 def test_number_has_six_digits_without_exponent(value, digits, text):
     assert number(value, digits) == text
+
+
+@every("value, unit, text", [
+    (1128.8123456, "kg m2", "1128.81 kg m2"), (np.float64(0.25), "", "0.25"), (0.5, "1", "0.5"), (3, "", "3"),
+    ((np.float64(0.1), 0.2), "m", "(0.1, 0.2) m"), ((1.0,), "", "(1,)"), (np.array(2.0), "N", "2 N"),
+    (np.array([1.0, -0.0]), "N", "[1, 0] N"), (np.zeros((2, 9)), "N", "<array of shape (2, 9)> N"),
+    ({"crank": (np.float64(0.12), 0.0)}, "kg m", "{'crank': (0.12, 0)} kg m"), (math.nan, "J", "nan J"),
+    ("start", "", "'start'"), (True, "", "True"), (None, "", "None"),
+])  # fmt: skip
+def test_values_of_results_have_units(value, unit, text):
+    assert plain(value, unit) == text
+
+
+PUMP = ks.crank_slider(0.05, 0.2, crank=ks.Link(2.0, 0.05), slider=ks.Link(1.0))
+RUNNING = ks.Scene(PUMP, 100.0, loads=ks.ProcessForce(-200.0))
+
+
+@every(
+    ("make", "text"),
+    [
+        (
+            lambda: ks.drive.flywheel(RUNNING, 0.01),
+            "Flywheel(inertia=0.259863 kg m2, energy=25.9863 J, fluctuation=0.01)",
+        ),
+        (
+            lambda: ks.drive.Motor.linear(10.0, 100.0),
+            "Linear(transmission=1, inertia=0 kg m2, standstill_torque=10 N m, ",
+        ),
+        (lambda: ks.drive.Motor.table([0.0, 9.0], [4.0, 0.0]), "speeds=[0, 9] rad/s, torques=[4, 0] N m)"),
+        (lambda: ks.principal_points(PUMP), "PrincipalPoints(mass=3 kg, static_moments={'crank': (0.15, 0), "),
+        (lambda: ks.balancing.partial(PUMP, 0.5, crank=ks.Counterweight(arm=-0.1)), "Balanced(counterweights={'crank'"),
+        (lambda: RUNNING.solve(2).ground["O"], "Support(force=[[1425, -1575]"),
+        (lambda: ks.extremes(RUNNING.solve(2), "O").range, "("),
+    ],
+)
+def test_results_have_units(make, text):
+    found = repr(make())
+    assert text in found
+    assert "np." not in found
 
 
 @every("value, bound, text", [

@@ -17,13 +17,17 @@ from support.every import every
         ("-12.5 deg", "rad", math.radians(-12.5)),
         ("1.5 kN/mm", "N/m", 1.5e6),
         ("2e3 g cm^2", "kg m^2", 2e-4),
+        ("0.5 N m s", "N*m*s", 0.5),
+        ("0.5 kN m s/rad", "N*m*s", 500.0),
     ],
 )
 def test_text_is_read_in_the_unit_asked_for(text, unit, value):
     assert to_si(text, unit) == pytest.approx(value, rel=1e-15)
 
 
-@pytest.mark.parametrize(("text", "unit"), [("5 Hz", "rad/s"), ("3 kg", "m"), ("5", "m"), ("12 m s", "m/s")])
+@pytest.mark.parametrize(
+    ("text", "unit"), [("5 Hz", "rad/s"), ("3 kg", "m"), ("5", "m"), ("12 m s", "m/s"), ("1 N m s/m", "N*m*s")]
+)
 def test_what_measures_something_else_is_refused(text, unit):
     with pytest.raises(ValueError, match=r"does not measure the same|has no unit"):
         to_si(text, unit)

@@ -76,7 +76,7 @@ def test_regime_has_the_crank_and_speed_of_the_film(case, name):
 
 
 def test_chains_oppose_the_rocker_and_take_their_energy_from_the_shaft(case):
-    """4 N m against the motion and 0.2 N m s/rad, at each crank angle; idle the mean is 0."""
+    """4 N m against the motion and 0.2 N m s, at each crank angle; idle the mean is 0."""
     turn = np.linspace(0.0, 2 * np.pi, 7200, endpoint=False)
     angle = ks.linkage.chain_unit_angle(turn)
     idle, grinding = (case.solve(name).at(angle) for name in ("r75-fast", "r75-fast-chains"))

@@ -124,6 +124,7 @@ def test_a_slip_of_units_is_told_by_its_path(found, words):
         lambda: hints(angle=[3.0, 90.0]),
         lambda: hints(crank_speed=-160.0),
         made(cam_saw, CIRCLE, roller=ks.Roller(0.05, 0.04, 20e6, 0.4)),  # rubber
+        made(ks.four_bar, 0.04, 0.3, 0.06, rocker_pivot=(0.3, 0.0), rocker=ks.Link(0.8, 0.2, 0.03)),  # arm of a wiper
     ],
 )
 def test_what_is_possible_is_not(found):

@@ -153,9 +153,12 @@ def reflected_value(value, sign=1.0):
 
 def reflected_table(table, sign=1.0):
     """A table over the angle runs backwards; over travel it stays, for the slider takes the same way at each time."""
+    if table.from_dead_centre:
+        own = {"period": table.period, "slider": table.slider, "zero": table.zero, "sense": -table.sense}
+        return ks.Table(table.sense * table.x, sign * table.y, **own)
     if table.over == "angle":
         x, y = reversed_rows(table.x, table.y, period=table.period)
-        return ks.Table(x, sign * y, period=table.period)
+        return ks.Table(x, sign * y, period=table.period, zero=table.zero)
     back = None if table.back is None else sign * table.back
     return ks.Table(table.x, sign * table.y, over="travel", back=back, slider=table.slider)
 

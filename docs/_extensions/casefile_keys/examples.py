@@ -116,6 +116,8 @@ BY_KEY: dict[str, list[Any]] = {
     "vary": [{"slider.mass": ["500 kg", "600 kg"]}],
     "weights": [[1.0, 0.1]],
     "where": ["table 1"],
+    "zero": ["TDC"],
+    "sense": [-1],
 }
 """Values tried before those of shipped cases, the first that a key takes is its example."""
 HEADINGS = {
@@ -150,7 +152,7 @@ BY_UNIT = (
     "20 kN/m",
     "10 N m/rad",
     "50 N s/m",
-    "2 N m s/rad",
+    "2 N m s",
     "55 kW",
     "210 GPa",
 )

@@ -32,7 +32,7 @@ DIMENSIONS = {
     "N/m^3": "cubic stiffness",
     "N m/rad": "torsional stiffness",
     "N s/m": "damping",
-    "N m s/rad": "torsional damping",
+    "N m s": "torsional damping",
     "W": "power",
     "Pa": "pressure",
     "1": "number",

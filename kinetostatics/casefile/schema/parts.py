@@ -24,7 +24,7 @@ from ...numbers import checks
 from ...numbers.units import quoted, to_si
 from .laws import Law
 from .tables import Cam, FaceTable, LinkTable, RollerTable, Table, list_of, one_of, value_in
-from .texts import Angle, Coordinate, GuidePoints, Stiffness, list_reader, pair_of, reader
+from .texts import Angle, Coordinate, GuidePoints, Stiffness, list_reader, pair_of, reader, value_reader
 
 GUIDE_FIELDS = {
     "guide_angle": (Angle | None, None),
@@ -70,21 +70,6 @@ def _ratio_reader(rule):
         return take(float(value))
 
     return read
-
-
-def value_reader(rule):
-    """Function that returns the value to keep by a rule, or raises `ValueError`."""
-
-    def take(value):
-        found, problem = rule.check(value)
-        if problem and isinstance(rule, checks.Sign):
-            others = f", or one of {', '.join(map(repr, rule.words))}" if rule.words else ""
-            raise ValueError(f"must be 1 or -1{others}, found {quoted(value)}")
-        if problem:
-            raise ValueError(problem.strip())
-        return found
-
-    return take
 
 
 _NUMBER = re.compile(r"\s*[-+−–]?[.,]?\d")

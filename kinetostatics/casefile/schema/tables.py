@@ -28,7 +28,9 @@ from .texts import (
     Modulus,
     Period,
     Point,
+    Sense,
     Weight,
+    Zero,
     list_reader,
     reader,
     series_of,
@@ -119,7 +121,11 @@ class ValuesTable(Table):
     period: Period = None
     """Crank angle after which the table repeats: one turn unless told, two for four strokes."""
     slider: str | None = None
-    """Over travel, the slider it goes by: unless told the one that the load acts on."""
+    """The slider whose travel or dead centre is read; by default the one that the load acts on."""
+    zero: Zero = None
+    """Crank angle at which the table's angle is 0: "TDC" or "BDC", dead centres of the slider, or an angle from +x."""
+    sense: Sense = 1
+    """Direction in which the table's angle increases: 1 counter-clockwise, -1 clockwise."""
 
 
 TAGS |= {"value:text": Table, "value:file": ValuesTable}

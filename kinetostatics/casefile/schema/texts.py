@@ -5,11 +5,12 @@ Each type ends with its SI unit, by which `build.places_by_path` finds the numbe
 
 import math
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
 
-from ...machine.loads import WholeTurns
+from ...machine.loads import DEAD_CENTRES, WholeTurns
+from ...numbers import checks
 from ...numbers.units import quoted, to_si
 
 MID_LENGTH = "mid-length"
@@ -26,6 +27,21 @@ def reader(unit, *, low=None, strict=False):
         return value
 
     return read
+
+
+def value_reader(rule):
+    """Function that returns the value to keep by a rule, or raises `ValueError`."""
+
+    def take(value):
+        found, problem = rule.check(value)
+        if problem and isinstance(rule, checks.Sign):
+            others = f", or one of {', '.join(map(repr, rule.words))}" if rule.words else ""
+            raise ValueError(f"must be 1 or -1{others}, found {quoted(value)}")
+        if problem:
+            raise ValueError(problem.strip())
+        return found
+
+    return take
 
 
 Length = Annotated[float, BeforeValidator(reader("m", low=0.0, strict=True)), "m"]
@@ -105,6 +121,10 @@ def _period(text):
     return period
 
 
+def _zero(text):
+    return text if text in DEAD_CENTRES else with_alternative(reader("rad"), '"TDC" or "BDC"')(text)
+
+
 Weight = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
 Point = Annotated[tuple[float, float], BeforeValidator(point), "m"]
 GuidePoints = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_two_points)]
@@ -112,3 +132,5 @@ Centre = Annotated[tuple[float, float] | str, BeforeValidator(_centre), "m"]
 Stiffness = Annotated[float | str, BeforeValidator(_stiffness), "N/m"]
 Period = Annotated[float | None, BeforeValidator(_period)]
 Sampling = Annotated[float | None, BeforeValidator(_sampling)]
+Zero = Annotated[float | str | None, BeforeValidator(_zero)]
+Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]

@@ -14,7 +14,7 @@ from ...machine.loads import ProcessForce
 from ...numbers import checks
 from ...numbers.units import quoted
 from .drives import DriveTable
-from .parts import Groups, Loads, field_of, value_reader
+from .parts import Groups, Loads, field_of
 from .tables import BalancingTable, Cam, GravityTable, LinkTable, RollerTable, Table, value_in
 from .texts import (
     Angle,
@@ -27,14 +27,15 @@ from .texts import (
     Period,
     Point,
     Sampling,
+    Sense,
     Speed,
     Stiffness,
+    value_reader,
 )
 
 SliderAssembly = Annotated[Any, BeforeValidator(value_reader(SliderGroup.RULES.rules["assembly"]))]
 RockerAssembly = Annotated[Any, BeforeValidator(value_reader(RockerGroup.RULES.rules["assembly"]))]
 LeverAssembly = Annotated[Any, BeforeValidator(value_reader(LeverGroup.RULES.rules["assembly"]))]
-Sense = Annotated[Any, BeforeValidator(value_reader(checks.Sign()))]
 Reaction = Annotated[Any, BeforeValidator(value_reader(ProcessForce.RULES.rules["reaction"]))]
 Name = Annotated[Any, BeforeValidator(value_reader(checks.Name()))]
 Bearings = field_of(Crank.RULES.rules["bearings"])

@@ -16,6 +16,7 @@ from ...numbers.arithmetic import atan, sign, sqrt
 from ...numbers.parameter_tree import come_from_one_class
 from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vectors, vector_or_zero
 from ..crank import ray
+from ..dimensions import Radius, within
 from ..group import FRAME, LINK, PLANE, Declaration, Group, Output, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..laws.law import turn_angles
@@ -139,6 +140,10 @@ class CamRoller(checks.Checked, Group):
             contacts={} if self.roller is None else {"contact_pressure": LineContact(self.roller, "cam_force")},
             lengths=tuple(getattr(self.cam, "lengths", ())),
         )
+
+    @property
+    def dimensions(self):
+        return {**within("cam", getattr(self.cam, "dimensions", {})), ("roller", "radius"): Radius("A")}
 
     @property
     def knots(self):

@@ -14,6 +14,7 @@ from ...numbers.arithmetic import compensated_sum, namespace, sqrt
 from ...numbers.lazy import cached_property
 from ...numbers.planar import length_with_error, minus
 from ..crank import ray as ray_at
+from ..dimensions import Radius, of_fixed_point
 from ..groups.near_dead_centre import CLOSE_SHARE, direction_and_length, squared_distances
 from .cam import Cam, Harmonic
 from .from_law import LawCam, from_law
@@ -99,6 +100,11 @@ class Circle(Cam):
     def lengths(self):
         """Lengths that define the pitch curve, m."""
         return (self.pitch_radius, *self.centre)
+
+    @property
+    def dimensions(self):
+        """What its numbers measure on a drawing, by their steps."""
+        return {("pitch_radius",): Radius(self.centre), **of_fixed_point("centre", self.centre)}
 
     @property
     def smallest_radius(self):

@@ -15,6 +15,7 @@ import numpy as np
 from ...errors import HintWarning, ParameterError
 from ...numbers import checks
 from ...numbers.brackets import find_minima
+from ...numbers.formatting import repr_with_units
 from ...numbers.lazy import cached_property
 from ...numbers.planar import polar_curvature
 from .. import plausibility
@@ -46,6 +47,8 @@ class Peak(NamedTuple):
 
     value: float
     angle: float
+
+    __repr__ = repr_with_units(angle="rad")
 
 
 def sampled_angles(cam):

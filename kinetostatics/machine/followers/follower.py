@@ -18,6 +18,7 @@ from ...numbers.planar import curvature, left, scale_vector, subtract_vectors
 from ..cams.cam import Cam
 from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
+from ..dimensions import Radius
 from ..group import PLANE, Group, Output
 from ..laws.law import TURN, Breakpoint, breakpoints_of, law_problem, turn_angles
 from ..links import CamDriven, Rolling
@@ -193,6 +194,10 @@ class Follower(checks.Checked, Group):
     @property
     def outlines(self):
         return {"crank": self.disk.outline}
+
+    @property
+    def dimensions(self):
+        return {("roller", "radius"): Radius(self.pin)}
 
     @property
     def knots(self):

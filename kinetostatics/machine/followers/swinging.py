@@ -29,6 +29,7 @@ from ...numbers.planar import (
     subtract_vectors,
 )
 from ..cams.roller import Roller
+from ..dimensions import Span, of_fixed_point
 from ..group import FRAME, LINK, Bar, Declaration, Output, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between
 from . import follower
@@ -186,6 +187,11 @@ class SwingingFollower(follower.Follower):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
         placed = place(law[:3], self.pivot, self.arm_length, self.assembly).roller
         return tuple(x + 1j * y for x, y in placed)
+
+    @property
+    def dimensions(self):
+        pivot = of_fixed_point("pivot", self.pivot_name)
+        return {**super().dimensions, ("arm_length",): Span(self.pivot_name, self.pin), **pivot}
 
     def motion(self, name, placement):
         found = self.placed(placement)

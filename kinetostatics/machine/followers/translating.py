@@ -22,6 +22,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
 from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
 from ..cams.roller import Face, Roller
+from ..dimensions import within
 from ..group import EMPTY, FRAME, LINK, Declaration, Output, Point, Resolved
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
@@ -69,6 +70,10 @@ class GuidedFollower(Follower):
                 lengths=(*getattr(self.cam, "lengths", ()), self.guide.guide_offset),
             )
         )
+
+    @property
+    def dimensions(self):
+        return {**super().dimensions, **within("guide", self.guide.dimensions(self.pin))}
 
     def sliding(self, name, placement):
         return Slide(self.guide.line.direction, placement.travels[self.moved].first)

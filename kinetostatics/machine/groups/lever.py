@@ -31,6 +31,7 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
+from ..dimensions import Span, of_fixed_point
 from ..group import FRAME, Declaration, Group, Output, Point, Resolved, rules_of_parts, separation
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, present
 from . import change_points, near_dead_centre
@@ -134,6 +135,12 @@ class RPRGroup(checks.Checked, Branch, Group):
             slots=(Slot(self.LEVER, self.on, self.BLOCK if self.is_rod else "", self.offset),),
             pairs=(Turning(self.BLOCK, self.on), Turning(self.LEVER, self.pivot_name), pair),
         )
+
+    @property
+    def dimensions(self):
+        lever = self.called(self.LEVER)
+        slot = Span((lever, 0.0, 0.0), (lever, 0.0, self.offset))
+        return {**of_fixed_point("pivot", self.pivot_name), ("offset",): slot}
 
     def sliding(self, name, placement):
         motion, offset = self.placed(placement), present(self.offset)

@@ -28,6 +28,7 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..crank import ray
+from ..dimensions import Angle, Span
 from ..group import Declaration, Group, Point, Resolved, rules_of_parts
 from ..links import Joint, Link, LinkMotion, Meshing, Turning
 
@@ -151,6 +152,10 @@ class PlanetaryCrank(checks.Checked, Group):
             pairs=(Turning("planet", self.on), Meshing("planet", self.on, "mesh", "tooth_force")),
             lengths=(self.radius,),
         )
+
+    @property
+    def dimensions(self):
+        return {("radius",): Span(self.on, self.pin), ("line_angle",): Angle("O")}
 
     @property
     def sign_forces(self):

@@ -31,6 +31,7 @@ from ...numbers.planar import (
     vector_or_zero,
     work,
 )
+from ..dimensions import Span, of_fixed_point
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, joint_at, link_between
@@ -290,6 +291,11 @@ class RockerGroup(Branch, RRRGroup):
         )
 
     @property
+    def dimensions(self):
+        lengths = {("coupler_length",): Span(self.on, self.pin), ("rocker_length",): Span(self.pivot_name, self.pin)}
+        return {**lengths, **of_fixed_point("pivot", self.pivot_name)}
+
+    @property
     def sizes(self):
         return self.coupler_length, self.rocker_length
 
@@ -432,6 +438,11 @@ class Dyad(RRRGroup):
             bars=(Bar(first, self.pin, "dyad1", self.length1), Bar(second, self.pin, "dyad2", self.length2)),
             pairs=(Turning("dyad1", first), Turning("dyad2", second), Turning("dyad2", self.pin, "dyad1")),
         )
+
+    @property
+    def dimensions(self):
+        first, second = self.on
+        return {("length1",): Span(first, self.pin), ("length2",): Span(second, self.pin)}
 
     def place(self, placement):
         first, second = (placement.joints[name] for name in self.on)

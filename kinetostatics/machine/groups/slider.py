@@ -26,6 +26,7 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
+from ..dimensions import Span, within
 from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, link_between
@@ -189,6 +190,10 @@ class SliderGroup(checks.Checked, Branch, Group):
                 Sliding("slider", self.pin, FRAME, "guide_force", "guide_moment"),
             ),
         )
+
+    @property
+    def dimensions(self):
+        return {("coupler_length",): Span(self.on, self.pin), **within("guide", self.guide.dimensions(self.pin))}
 
     def sliding(self, name, placement):
         return Slide(self.guide.line.direction, placement.travels[self.called("slider")].first)

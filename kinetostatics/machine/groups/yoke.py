@@ -21,6 +21,7 @@ from ...numbers.planar import (
     subtract_vectors,
     vector_or_zero,
 )
+from ..dimensions import Angle, within
 from ..group import FRAME, Declaration, Group, Point, Resolved, rules_of_parts
 from ..guide import Guide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning
@@ -167,6 +168,11 @@ class YokeGroup(checks.Checked, Group):
                 Sliding("block", self.on, "slider", "slot_force", "slot_moment"),
             ),
         )
+
+    @property
+    def dimensions(self):
+        slot = Angle(self.pin, self.guide.direction)
+        return {("slot_angle",): slot, **within("guide", self.guide.dimensions(self.pin))}
 
     def sliding(self, name, placement):
         motion = self.placed(placement)

@@ -6,6 +6,7 @@ May import errors, numbers and the modules of `machine` that describe links and 
 # ruff: noqa: F401 - other rooms import from here
 
 from .balance_shaft import BalanceShaft, balance_shafts, loads_with_mass
+from .dead_centres import dead_centres
 from .gas_spring import GasSpring
 from .gravity import Gravity
 from .load import (
@@ -21,10 +22,10 @@ from .load import (
 )
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring, spring_masses
-from .table import Table
+from .table import DEAD_CENTRES, Table
 from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows, period_of
 from .torsion import Torque, TorsionDamper, TorsionSpring
-from .work import Mowing, Sawing, dead_centres
+from .work import Mowing, Sawing
 
 KINDS = (
     *(Gravity, Spring, ProcessForce, Sawing, Mowing, GasSpring, Force, PointForce, PointSpring, PointDamper),

@@ -9,16 +9,21 @@ from ...errors import CaseError, ParameterError
 from ...numbers import checks
 from ...numbers.arithmetic import namespace
 from ...numbers.parameter_tree import replace_unchecked
+from ...numbers.units import to_si
 from ..kinematic_state import require_sense
 from . import table_pieces
+from .dead_centres import dead_centres
 from .table_pieces import TRAVEL_TOLERANCE, TURN, WholeTurns, kink_rows, stops_and_crossings
 
 COLUMNS = {"angle": ("crank_angle", "rad"), "travel": ("travel", "m")}
 """Heading and unit of the first column, by `over`."""
+DEAD_CENTRES = ("TDC", "BDC")
+"""Names of the far and the near dead centre of a slider from the crank: top and bottom dead centre."""
 MAX_AREA = checks.PlausibleRange(5.0, "is it in cm2, or in mm2?")
 """Largest plausible area of a piston, m2: 2.5 m in diameter."""
 VALUE_HEADINGS = {"N": "force", "N*m": "torque", "N m": "torque", "Pa": "pressure"}
 """Heading of a column of values, by unit."""
+SLIDER_WORDS = 'slider is for a table over="travel", or one with zero="TDC" or "BDC"'
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,23 +59,46 @@ class Table:
     period : float
         Crank angle after which a table over the angle repeats, rad: 2 pi or a whole multiple of it.
     slider : str, optional
-        Slider whose travel is read; by default the slider that the load acts on, or the only one of the mechanism.
+        Slider whose travel or dead centre is read; by default the slider that the load acts on, or the only one of the
+        mechanism.
+    zero : float, text or "TDC" or "BDC", optional
+        Crank angle at which the table's angle is 0, rad from +x, or text with a unit ("90 deg"); by default 0. "TDC" is
+        the dead centre of the slider farther from the crank, "BDC" the nearer one; both follow the lengths. Without a
+        zero, a `HintWarning` reports a force on a slider whose largest value is far from both dead centres.
+    sense : +1 or -1
+        Direction in which the table's angle increases: +1 counter-clockwise, as the library's crank angle, -1
+        clockwise. Degrees after TDC in the sense of rotation need the sign of the crank speed.
 
     Raises
     ------
     ParameterError
         Over the angle: fewer than three rows, angles that do not rise, rows over more or less than a period, unequal
-        ends; over travel: fewer than two rows, coordinates that do not rise. When a scene is solved: the slider leaves
-        the table.
+        ends; over travel: fewer than two rows, coordinates that do not rise. When a scene is made: a dead centre, or
+        travel, of none or several sliders. When it is solved: the slider leaves the table; it has not one far and one
+        near dead centre, or the mechanism does not close all round.
+
+    Notes
+    -----
+    The attributes `x` and `y` hold rising, counter-clockwise angles, from +x or from the dead centre.
 
     Examples
     --------
+    >>> import numpy as np
     >>> import kinetostatics as ks
     >>> pump = ks.crank_slider(0.05, 0.2)
     >>> gas = ks.Table([0.15, 0.2, 0.25], [-900.0, -500.0, -100.0], over="travel", back=[0.0, 0.0, 0.0])
     >>> s = ks.solve(pump, [1.0, 5.0], crank_speed=100.0, loads=ks.ProcessForce(gas))
     >>> [round(float(torque), 3) for torque in s.balancing_torque]
     [0.0, 22.287]
+
+    An indicator diagram in degrees after top dead centre, of an engine that turns clockwise:
+
+    >>> engine = ks.crank_slider(0.05, 0.2, guide_angle=np.pi / 2)
+    >>> after_tdc = np.radians([0.0, 15.0, 90.0, 180.0, 270.0])
+    >>> gas = ks.Table(after_tdc, [-5e3, -9e3, -1e3, 0.0, -1e3], zero="TDC", sense=-1)
+    >>> s = ks.solve(engine, np.pi / 2 - after_tdc[1], crank_speed=-100.0, loads=ks.ProcessForce(gas))
+    >>> print(f"{s.reaction('B')[1]:.1f} N")
+    9000.0 N
     """
 
     rows: Any = field(repr=False)
@@ -78,14 +106,19 @@ class Table:
     slider: Any = None
     period: float = field(default=TURN, metadata={"structural": True})
     unit: str = field(default="", metadata={"structural": True})
+    zero: Any = field(default=None, metadata={"structural": True})
+    sense: int = field(default=1, metadata={"structural": True})
 
     RULES = checks.Rules("table")
 
-    def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None):
+    def __init__(self, x, y, over="angle", back=None, period=TURN, slider=None, zero=None, sense=1):
         given = {"x": x, "y": y} | ({} if back is None else {"back": back})
         unit = table_pieces.unit_of(y) or table_pieces.unit_of(back)
         units = dict.fromkeys(given, unit or "N") | {"x": "m" if over == "travel" else "rad"}
         period, wrong_period = WholeTurns().check(period, "period")
+        sense, wrong_sense = checks.Sign().check(sense, "sense")
+        zero, wrong_zero = _angle_or_dead_centre(zero)
+        by_angle = None if over == "angle" else 'is for a table over="angle"'
         found = checks.check_values(
             "table",
             {name: checks.Number(unit, table=True) for name, unit in units.items()},
@@ -94,7 +127,9 @@ class Table:
             wrong_period,
             None if slider is None else checks.Name().check(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
-            None if slider is None or over == "travel" else 'slider is for a table over="travel"',
+            None if slider is None or over == "travel" or _is_dead_centre(zero) else SLIDER_WORDS,
+            wrong_zero or (zero is not None and by_angle and f"zero {by_angle}") or None,
+            wrong_sense or (sense == -1 and by_angle and f"sense {by_angle}") or None,
         )
         try:
             arrays = {name: np.array(values, dtype=float) for name, values in found.items()}
@@ -113,16 +148,22 @@ class Table:
             checks.require("table", table_pieces.angle_problem(arrays["x"], arrays["y"], period))
             if table_pieces.repeats_first_row(arrays["x"], period):
                 arrays = {name: values[:-1] for name, values in arrays.items()}
+            if sense == -1:
+                arrays = {"x": -arrays["x"][::-1], "y": arrays["y"][::-1]}
+            if zero is not None and not _is_dead_centre(zero):
+                arrays["x"], zero, sense = arrays["x"] + zero, 0.0, 1
         else:
             few = "at least 2 rows are needed, got 1; a value that does not change is no table"
             short = None if period == TURN else "over travel the period is one turn"
             checks.require("table", few if arrays["x"].size < 2 else None, short)
         for values in arrays.values():
             values.setflags(write=False)
-        vars(self).update(rows=Rows(**arrays), over=over, slider=slider, period=period, unit=unit)
+        vars(self).update(
+            rows=Rows(**arrays), over=over, slider=slider, period=period, unit=unit, zero=zero, sense=sense
+        )
 
     @classmethod
-    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None):
+    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None, zero=None, sense=1):
         """Read a table with two or three columns, each headed by its name and a unit that converts.
 
         Parameters
@@ -136,7 +177,7 @@ class Table:
         area : float, optional
             Piston area, m2, that turns pressures into forces along the guide; negative if they push against its
             direction.
-        period, slider
+        period, slider, zero, sense
             As of the table.
         over : "angle" or "travel", optional
             Column to read if the file has both; by default the travel.
@@ -182,13 +223,13 @@ class Table:
         x, *values = read_columns(path, {column: own, value: of} | ({f"{value}_back": of} if back else {}))
         y, back, *_ = *(part if area is None else area * part for part in values), None
         try:
-            return replace_unchecked(cls(x, y, over, back, period, slider), unit=unit.replace(" ", "*"))
+            return replace_unchecked(cls(x, y, over, back, period, slider, zero, sense), unit=unit.replace(" ", "*"))
         except ParameterError as error:
             raise CaseError(path, [str(error)]) from None
 
     @property
     def x(self):
-        """Crank angles, rad, or coordinates along the guide, m."""
+        """Counter-clockwise angles from +x or from the dead centre `zero`, rad, or coordinates along the guide, m."""
         return self.rows.x
 
     @property
@@ -212,33 +253,64 @@ class Table:
         values = np.concatenate(self.strokes)
         return float(values[np.argmax(np.abs(values))])
 
+    @property
+    def from_dead_centre(self):
+        """Whether its angles count from a dead centre of a slider."""
+        return _is_dead_centre(self.zero)
+
+    @property
+    def needs_slider(self):
+        """Whether it reads the travel or a dead centre of a slider."""
+        return self.over == "travel" or self.from_dead_centre
+
     def of(self, slider):
-        """The table with this slider, if it is over travel and names none."""
-        return self if self.over == "angle" or self.slider is not None else replace_unchecked(self, slider=slider)
+        """The table with this slider, if it needs one and names none."""
+        return replace_unchecked(self, slider=slider) if self.needs_slider and self.slider is None else self
 
     def problems(self, mechanism):
         """Problems of the table on a mechanism, as sentences."""
-        if self.over == "angle":
+        if not self.needs_slider:
             return
-        sliders = tuple(mechanism.guides)
+        sliders, title = tuple(mechanism.guides), f"table {'from its ' + self.zero if self.zero else 'over travel'}"
         if self.slider is not None:
-            yield checks.choice("table over travel: slider", self.slider, sliders)
+            yield checks.choice(f"{title}: slider", self.slider, sliders)
         elif len(sliders) != 1:
             there = f"sliders {', '.join(map(repr, sliders))}: say which, slider=..." if sliders else "no slider"
-            yield f"table over travel: the mechanism has {there}"
+            yield f"{title}: the mechanism has {there}"
 
     def __call__(self, motion):
         return self.read(motion, self.pieces(motion))
 
     def place(self, motion):
-        """Crank angle, rad, or travel of the slider, m, at which it is read."""
-        return motion.crank_angle if self.over == "angle" else motion.travel(self._slider(motion))
+        """Crank angle or angle from the dead centre, rad, or travel of the slider, m, at which it is read."""
+        if self.over == "travel":
+            return motion.travel(self._slider(motion))
+        return motion.crank_angle - self.zero_angle(motion) if self.from_dead_centre else motion.crank_angle
 
-    def read(self, motion, pieces):
-        """Values at a motion, (..., N), from its `pieces`."""
+    def zero_angle(self, motion):
+        """Crank angle of the dead centre from which its angles count, rad: a number, or an array (designs, 1).
+
+        Raises
+        ------
+        ParameterError
+            The mechanism does not close all round, or the slider has not one far and one near dead centre.
+        """
+        angle = dead_centres(motion, self._slider(motion))[0][DEAD_CENTRES.index(self.zero)]
+        if np.any(missing := np.isnan(angle)):
+            raise ParameterError(
+                f"table from {self.zero}: {motion.mechanism.name} does not close at all crank angles, so "
+                f"{self._slider(motion)!r} has no {self.zero}; give its zero as an angle",
+                np.ravel(missing) if np.ndim(angle) else None,
+            )
+        return angle
+
+    def read(self, motion, pieces, zero=None):
+        """Values at a motion, (..., N), from its `pieces`; `zero` is the angle of the dead centre if it is known."""
         start, value, slope = pieces
-        is_angle = self.over == "angle"
-        beyond = motion.crank_angle - start if is_angle else motion.elongation(start, self._slider(motion))
+        if self.over == "travel":
+            beyond = motion.elongation(start, self._slider(motion))
+        else:
+            beyond = (self.place(motion) if zero is None else motion.crank_angle - zero) - start
         return value + slope * beyond
 
     def _slider(self, motion):
@@ -311,7 +383,8 @@ class Table:
     def kinks(self, motion):
         """Crank angles of its kinks, (K,), and jumps, (J,), in its period, rad; ends of strokes are among the kinks."""
         if self.over == "angle":
-            return np.mod(self.x, self.period), np.empty(0)
+            zero = self.zero_angle(motion) if self.from_dead_centre else 0.0
+            return np.ravel(np.mod(self.x + zero, self.period)), np.empty(0)
         ends, passed = (part[~np.isnan(part)] for part in stops_and_crossings(motion, self._slider(motion), self.x))
         return np.concatenate([ends, passed]), ends if self.back is not None else np.empty(0)
 
@@ -334,7 +407,9 @@ class Table:
         ignored = np.delete(off if by_angle else np.pad(off, 1), rows)
         rest = float(ignored.max(initial=0.0) / (abs(self.largest) or 1.0))
         if by_angle:
-            return np.mod(inner, self.period)[None], np.zeros(inner.size, dtype=bool), rest
+            if self.from_dead_centre:
+                inner = inner + dead_centres(motion, self._slider(motion))[0][DEAD_CENTRES.index(self.zero)]
+            return np.atleast_2d(np.mod(inner, self.period)), np.zeros(rows.size, dtype=bool), rest
         ends, found = stops_and_crossings(motion, self._slider(motion), inner)
         jumps = ends.shape[1] if self.by_sense else 0
         found = np.column_stack([ends[:, :jumps], found])
@@ -343,10 +418,27 @@ class Table:
     @property
     def _content(self):
         arrays = (part if part is None else part.tobytes() for part in (self.x, self.y, self.back))
-        return *arrays, self.over, self.slider, self.period, self.unit
+        return *arrays, self.over, self.slider, self.period, self.unit, self.zero, self.sense
 
     def __eq__(self, other):
         return self._content == other._content if isinstance(other, Table) else NotImplemented
 
     def __hash__(self):
         return hash(self._content)
+
+
+def _is_dead_centre(zero):
+    return isinstance(zero, str) and zero in DEAD_CENTRES
+
+
+def _angle_or_dead_centre(zero):
+    """The zero of a table over the angle, rad, or the name of a dead centre, and its problem or None."""
+    if zero is None or _is_dead_centre(zero):
+        return zero, None
+    if isinstance(zero, str):
+        try:
+            return to_si(zero, "rad"), None
+        except ValueError as error:
+            return zero, f"zero {error}; or write {' or '.join(map(repr, DEAD_CENTRES))}"
+    found, problem = checks.Number("rad").check(zero, "zero")
+    return found, "zero must be one angle, not an array" if problem is None and np.ndim(found) else problem

@@ -313,6 +313,8 @@ def _roots(function, low, high):
 
 # Rounding errors
 
+DEAD_CENTRE_ERROR = 1e-12
+"""Largest error of the crank angle of a dead centre, rad."""
 BOUND_FACTOR = 1.0 + 1e-9
 """Factor of a bound that covers products of roundings."""
 MIN_BOUND = 2.0**-1000
@@ -320,7 +322,7 @@ MIN_BOUND = 2.0**-1000
 
 
 def rounding_bound(table, motion):
-    """Bound on the error of values of a table over the angle at the crank angles, (..., N), N or N m.
+    """Bound on the error of values of a table over the angle at its exact angles, (..., N), N or N m.
 
     A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
     The bound of a piece is that at its end. The end of the last piece is rounded too. In other turns all rows move by
@@ -332,7 +334,7 @@ def rounding_bound(table, motion):
     own = np.where(rise == 0.0, 0.0, 5.0 * rise + np.maximum(np.abs(y[1:]), np.abs(y[:-1])))
     if x[0] != 0.0:
         own[-1] += 2.0 * abs(x[-1]) * slope[-1]
-    angle = np.asarray(motion.crank_angle)
+    angle = np.asarray(table.place(motion))
     turned = np.floor((angle - x[0]) / table.period) * table.period
     place = angle - turned
     row = piece_index(np, x, place)
@@ -353,7 +355,9 @@ def _row_distance(x, place):
 
 
 def kink_bounds(table, motion):
-    """Bounds of kinks and jumps of a table over travel near each place, for error bounds (see `engines.record`).
+    """Bounds of kinks and jumps of a table near each place, for error bounds (see `engines.record`).
+
+    The table is over travel, or over the angle from a dead centre, and then without jumps.
 
     Returns
     -------
@@ -364,10 +368,16 @@ def kink_bounds(table, motion):
     near : float
         m, of the rate m/rad.
     distance : array (..., N)
-        Distance of the nearest row, m.
+        Distance of the nearest row, m or rad.
     """
     near = 1e-6 * float(table.x[-1] - table.x[0])
-    place, rate = np.asarray(table.place(motion), dtype=float), table.rate(motion)
+    place = np.asarray(table.place(motion), dtype=float)
+    if table.over == "angle":
+        x, (y,) = table.closed()
+        distance = _row_distance(x, place - np.floor((place - x[0]) / table.period) * table.period)
+        change = np.where(distance <= near, 2.0 * np.max(np.abs(np.diff(y) / np.diff(x))), 0.0)
+        return change, 0.0, near, np.maximum(distance - DEAD_CENTRE_ERROR, 0.0)
+    rate = table.rate(motion)
     steepest = np.max(np.abs(np.diff(table.strokes) / np.diff(table.x)))
     distance, jump = _row_distance(table.x, place), 0.0
     if table.back is not None:

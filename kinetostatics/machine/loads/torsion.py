@@ -303,7 +303,7 @@ class TorsionDamper(Couple):
     Parameters
     ----------
     coefficient : float or array
-        N m s/rad.
+        N m s.
     on, against : str
         As for `Torque`; links may make full turns.
 
@@ -326,7 +326,7 @@ class TorsionDamper(Couple):
     against: Any = field(default=None, kw_only=True)
 
     PATH, SIGN, DISSIPATES = "torsion_damper", "ring", True
-    RULES = checks.Rules("torsion damper", coefficient=checks.Number("N*m*s/rad", low=0.0), **LINK_RULES)
+    RULES = checks.Rules("torsion damper", coefficient=checks.Number("N*m*s", low=0.0), **LINK_RULES)
 
     def couple(self, motion):
         """Couple on the link, N m."""

@@ -14,24 +14,22 @@ import math
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ...errors import NotGivenError, ParameterError
+from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.arithmetic import is_foreign_array, sign, sin
+from ...numbers.arithmetic import sign, sin
 from ...numbers.planar import add_vectors, number_or_zero, product, rotate
 from ..links import Wrench, present
+from .dead_centres import dead_centres
 from .load import Jumps, unknown_sense
 from .slider import REACTIONS, WorkForce
 from .table import Table
-from .table_pieces import TURN, sign_changes, stops_and_crossings
+from .table_pieces import TURN, stops_and_crossings
 
 CUTS = {"toward crank": -1.0, "away": 1.0}
 """Sense of the cutting stroke by its name: +1 from the near dead centre to the far one."""
-CENTRED = 1e-9
-"""Largest distance of a centred mid-stroke from the foot of O on the guide, relative to the stroke."""
 MAX_PITCHES = 1000
 """Largest number of fingers that a section passes in a stroke."""
 MILLIMETRES, MEGAPASCALS = "is it in mm?", "is it in MPa?"
@@ -77,57 +75,6 @@ class StrokeForce(WorkForce):
     def jump_angles(self, motion):
         """Crank angles of the dead centres, (1 or designs, J), rad."""
         return np.mod(np.column_stack(dead_centres(motion, self.on)[0]), TURN * motion.mechanism.turns)
-
-
-_DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
-"""By mechanism and slider: its dead centres."""
-
-
-def dead_centres(motion, slider):
-    """Crank angles, rad, and coordinates, m, of the far and the near dead centre of a slider: two pairs.
-
-    Numbers, or arrays (designs, 1); NaN where the mechanism does not close all round. On a slider whose stroke is
-    centred on O, as that of a yoke, the far dead centre is ahead in the direction of the guide. `ParameterError` if the
-    slider dwells or does not reciprocate once, `NotGivenError` if lengths are traced numbers or enclosures.
-    """
-    known = _DEAD_CENTRES.setdefault(motion.mechanism, {})
-    if slider not in known:
-        known[slider] = _dead_centres(motion.mechanism, slider)
-    return known[slider]
-
-
-def _dead_centres(mechanism, slider):
-    def travel(angle):
-        return mechanism.place(angle).travels[slider]
-
-    with np.errstate(invalid="ignore", divide="ignore"):
-        first = travel(np.zeros(1)).position
-        if is_foreign_array(first) or first.dtype == object:
-            raise NotGivenError(f"the stroke of {slider!r} needs plain lengths to compute its dead centres")
-        _, rate, stops = sign_changes(lambda angle: travel(angle).first, mechanism.turns)
-        closes, changes = ~np.isnan(rate).any(axis=-1), np.sum(~np.isnan(stops), axis=-1)
-        wrong = closes & (changes != 2)
-        if wrong.any():
-            raise ParameterError(
-                f"a stroke needs a slider that reciprocates once in a turn, but {slider!r} of {mechanism.name} "
-                f"changes its direction {np.max(np.where(wrong, changes, 0))} times",
-                wrong if first.ndim > 1 else None,
-            )
-        still = ((rate[:, :-1] == 0.0) & (rate[:, 1:] == 0.0)).any(axis=-1)
-        if still.any():
-            raise ParameterError(
-                f"a stroke needs a slider that reciprocates, but {slider!r} of {mechanism.name} stands still on a "
-                "part of the turn, where a force against its motion has no sense",
-                still if first.ndim > 1 else None,
-            )
-        angle = np.full((*closes.shape, 2), np.nan)
-        if closes.any():
-            angle[closes] = stops[closes, :2]
-        place = np.broadcast_to(travel(angle).position, angle.shape)
-    is_far = place.sum(axis=-1, keepdims=True) >= -CENTRED * np.ptp(place, axis=-1, keepdims=True)  # the one ahead
-    order = np.argsort(np.where(is_far, -place, place), axis=-1)
-    pairs = (np.split(np.take_along_axis(part, order, axis=-1), 2, axis=-1) for part in (angle, place))
-    return tuple(tuple(part if first.ndim > 1 else part.item() for part in pair) for pair in pairs)
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,6 +32,8 @@ SYNONYMS = {
     "mean": ("average", "avg"),
     "rms": ("root_mean_square", "effective"),
     "range": ("ptp", "peak_to_peak", "span"),
+    # outputs
+    "mean balancing_torque": ("mean_torque", "mean_power", "energy_per_turn"),
     # quantities
     "balancing_torque": ("torque", "moment", "drive_torque", "driving_torque", "input_torque", "crank_torque"),
     "guide_force": ("normal_force", "side_force", "side_thrust"),

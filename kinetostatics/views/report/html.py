@@ -85,7 +85,7 @@ def _contents(subject, progress):
     calculations = tables.calculations(subject, turning["start"])
     progress("figures")
     drawn = _figures(subject, values, runs)
-    box = moving["box"]
+    boxes = [item["box"] for item in moving["drawings"]]
     return {
         "subject": subject,
         "tables": contents,
@@ -101,7 +101,7 @@ def _contents(subject, progress):
         "colours": figures.COLOURS,
         "dashes": figures.SVG_DASHES,
         "together": _same_torque_text(subject),
-        "wide": box[2] - box[0] > WIDE_RATIO * (box[3] - box[1]),
+        "wide": any(right - left > WIDE_RATIO * (high - low) for left, low, right, high in boxes),
         "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": dt.date.today().isoformat(),
@@ -177,12 +177,13 @@ def _figures(subject, values, runs):
     if runs:
         names = {name: row for row, name in enumerate(subject.machines)}
         angles = {name: np.degrees(run.crank_angle) for name, run in runs.items()}
-        speeds = {names[name]: (angles[name], run.speed) for name, run in runs.items()}
+        factor, unit = display_unit("rad/s", [run.speed for run in runs.values()])
+        speeds = {names[name]: (angles[name], factor * run.speed) for name, run in runs.items()}
+        made["speed"] = figures.curves_over(list(names), speeds, f"crank speed [{pretty_unit(unit)}]", 260)
         ratios = {name: run.motor.transmission if run.motor else 1.0 for name, run in runs.items()}
         torques = {name: ratios[name] * run.motor_torque for name, run in runs.items()}
         factor, unit = display_unit("N m", torques.values())
         drawn = {names[name]: (angles[name], factor * torque) for name, torque in torques.items()}
-        made["speed"] = figures.curves_over(list(names), speeds, "crank speed [rad/s]", 260)
         made["motor"] = figures.curves_over(list(names), drawn, f"motor torque [{pretty_unit(unit)}]", 260)
     return {
         "items": {name: json_item(plot) for name, plot in made.items()},

@@ -15,6 +15,7 @@ from ...errors import ParameterError
 from ...machine.loads import period_of
 from ...numbers import checks, files
 from ...numbers.lazy import cached_property
+from ...numbers.output_units import output_units, shown_in
 from ...solution.scene import Scene
 from ..canvas import angles_between
 from . import figures, html
@@ -192,7 +193,7 @@ PROGRESS_DELAY = 1.0
 """Seconds before a progress bar appears."""
 
 
-def report(what, path, *, variant=None, title=None, pdf=None, command="", progress=False):
+def report(what, path, *, variant=None, title=None, pdf=None, units=None, command="", progress=False):
     """Write a report: one HTML file without external files or requests, to read, to turn by hand and to print.
 
     The mechanism turns by slider, play button or arrow keys, with its reactions as arrows. The page also shows figures
@@ -211,6 +212,9 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
         By default the case's title, or the names of the mechanisms.
     pdf : path, optional
         File for the report as PDF too, printed by an installed browser.
+    units : dict of dimension to unit, optional
+        Units of tables and figures, {"force": "kN", "length": "mm"}, as for `in_units`; the hand calculation stays in
+        SI, and so do published figures beside ours.
     command : str
         Command that made the report, shown in it.
     progress : bool
@@ -228,7 +232,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
     MissingLibraryError
         Bokeh is not installed, or no browser for the PDF.
     CaseError, ParameterError
-        The case or the scenes cannot be used.
+        The case, the scenes or the units cannot be used.
 
     Examples
     --------
@@ -253,6 +257,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
         None if pdf is None else files.write_problem(pdf, inputs=inputs, endings=(".pdf",)),
         None if title is None or (isinstance(title, str) and title.strip()) else f"title must be a text, got {title!r}",
     )
+    units = None if units is None else output_units(units, "report")
     figures.require_bokeh()
     if pdf is not None:
         html.browser()
@@ -272,7 +277,8 @@ def report(what, path, *, variant=None, title=None, pdf=None, command="", progre
             bar.set_postfix_str(text, refresh=False)
             bar.update()
 
-        text = html.page(subject, tell)
+        with shown_in(units):
+            text = html.page(subject, tell)
         with files.write_atomically(path) as temporary:
             Path(temporary).write_text(text, encoding="utf-8", errors="replace")  # names of files may be invalid UTF-8
         if pdf is not None:

@@ -22,6 +22,7 @@ from ...errors import KinetostaticsError, NotGivenError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, heading, parse_heading, pretty_unit, round_bound_up
+from ...numbers.output_units import shown_units
 from ..canvas import display_unit, drawn_limit, ordinary_size
 from .movement import to_base64
 
@@ -60,9 +61,15 @@ def texts_of(frame):
 
 def table_of_frame(frame, caption, note=""):
     """Table of a frame with an index of row names; cells of text stay unchanged."""
+    frame = shown_units().table(frame)
     columns = [_pretty_heading(str(name)) for name in frame.columns]
     rows = [[str(name), *cells] for name, *cells in texts_of(frame).itertuples()]
     return Table(caption, [frame.index.name or "", *columns], rows, 2 if columns[:1] == ["unit"] else 1, note)
+
+
+def _heading_in_units(text):
+    name, unit = parse_heading(text)
+    return _pretty_heading(heading(name, shown_units().of(unit)[1]) if unit else name)
 
 
 def _pretty_heading(text):
@@ -105,10 +112,11 @@ class MergedRow(NamedTuple):
     bounds_of_ratios: list[float]
 
 
-def merged_rows(comparisons):
+def merged_rows(comparisons, published=()):
     """Rows of comparisons with one reference, without torque extrema if they are many, and the number left out.
 
-    A row stands behind its predecessor in its own table.
+    A row stands behind its predecessor in its own table. Rows have the units of the report, but those with `published`
+    values.
     """
     tables = [{row.label: row for row in comparison.rows} for comparison in comparisons]
     labels: list[str] = []
@@ -123,10 +131,11 @@ def merged_rows(comparisons):
         first = next(table[label] for table in tables if label in table)
         lacking = Row(label, first.unit, (np.nan, np.nan), np.nan)
         rows = [table.get(label, lacking) for table in tables]
-        numbers = [first.pair[0], *(row.pair[1] for row in rows)]
-        bounds = [first.bounds[0], *(row.bounds[1] for row in rows)]
+        factor, unit = (1.0, first.unit) if label in published else shown_units().of(first.unit)
+        numbers = [factor * value for value in (first.pair[0], *(row.pair[1] for row in rows))]
+        bounds = [factor * bound for bound in (first.bounds[0], *(row.bounds[1] for row in rows))]
         ratios, bounds_of_ratios = [row.ratio for row in rows], [row.bound_of_ratio for row in rows]
-        found.append(MergedRow(label, first.unit, numbers, bounds, ratios, bounds_of_ratios))
+        found.append(MergedRow(label, unit, numbers, bounds, ratios, bounds_of_ratios))
     more = left_out({row.label: row.numbers for row in found})
     return [row for row in found if row.label not in more], len(more)
 
@@ -206,7 +215,9 @@ ZERO_NOTE = (
 def glance(subject):
     """Overview table: torque, ratio to the reference, support reaction and power balance of each machine."""
     rows: list[list[str]] = []
+    torque, power = (shown_units().of(unit)[0] for unit in ("N m", "W"))
     means = {name: float(mean_absolute_torque(solution)) for name, solution in subject.solutions.items()}
+    works = [solution.energy_per_turn for solution in subject.solutions.values()]
     for name, machine in subject.machines.items():
         solution, mean = machine.solution, means[name]
         reference = subject.reference_of(name)
@@ -214,22 +225,26 @@ def glance(subject):
         joint = "O" if "O" in solution.reactions else solution.reactions[-1]
         peak, reaction = (_largest(machine.extremes[name]) for name in ("balancing_torque", joint))
         gain = "" if machine is reference else ratio_text(base / mean) if mean > 1e-12 * base else "∞"
-        cells = [machine.name, machine.scene.mechanism.name, number(mean, 5), gain, peak]
-        lost = number(solution.losses.total, 5) if lose(solution) else ""
+        drive = ((torque, solution.mean_torque), (power, solution.mean_power))
+        drive = [number(factor * part, 5) if any(works) else "" for factor, part in drive]
+        cells = [machine.name, machine.scene.mechanism.name, number(torque * mean, 5), gain, *drive, peak]
+        lost = number(power * solution.losses.total, 5) if lose(solution) else ""
         rows.append([*cells, reaction, lost, number(solution.power_residual, 2)])
-    heads = ["machine", "kind", "mean |torque| [N·m]", "ratio of means", "largest |torque| [N·m]"]
-    heads += ["largest reaction O [N]", "power lost [W]", "power balance"]
-    references = " or ".join(subject.comparisons) or subject.reference.name
+    heads = ["machine", "kind", "mean |torque| [N m]", "ratio of means", "mean torque [N m]", "mean power [W]"]
+    heads += ["largest |torque| [N m]", "largest reaction O [N]", "power lost [W]"]
+    heads = [*map(_heading_in_units, heads), "power balance"]
+    references = " or ".join(subject.comparisons)
+    ratio = f" Ratio of means: that of {references} over that of the machine; above 1 the machine takes less."
     note = (
-        "Torque: what the drive must give on the crank, over one period. Ratio of means: that of "
-        f"{references} over that of the machine; above 1 the machine takes less. Power balance: difference "
-        "of the torques by equilibrium and by powers, over the largest power that flows."
+        f"Torque: what the drive must give on the crank, over one period.{ratio if references else ''} Power balance: "
+        "difference of the torques by equilibrium and by powers, over the largest power that flows."
     )
     return _without_empty(Table("", heads, rows, 2, note))
 
 
 def _largest(row):
     """Largest magnitude of a quantity over the turn, with its certain digits."""
+    row = row.in_units(shown_units())
     low, _, high, _ = row.ends
     value, error = max((low, row.errors[0]), (high, row.errors[2]), key=lambda end: abs(end[0]))
     return number(abs(value), 5, error)
@@ -259,8 +274,9 @@ def comparisons(subject):
 def _coefficients(subject, reference, others):
     """Table of machines with one reference: values, with the ratio of the reference to each below."""
     name, case = reference.name, subject.case
-    merged, omitted = merged_rows(Comparison(reference.solution, item.solution) for item in others)
     of_study = case is not None and name == case.reference
+    found = [Comparison(reference.solution, item.solution) for item in others]
+    merged, omitted = merged_rows(found, case.published.value if of_study else ())
     published = case.published_of([row.label for row in merged]) if of_study else {}
     rows = []
     for label, unit, (first, *values), (bound, *bounds), *ratios in merged:
@@ -288,8 +304,8 @@ def extremes(subject):
     tables = []
     for machine in subject.machines.values():
         rows = []
-        for name, (quantity, ends, (low_error, _, high_error, _)) in machine.extremes.items():
-            low, low_at, high, high_at = ends
+        for name, row in machine.extremes.items():
+            quantity, (low, low_at, high, high_at), (low_error, _, high_error, _) = row.in_units(shown_units())
             digits = _proven_digits((low, low_error), (high, high_error))
             if digits is None:
                 digits = _digits(machine.solution, name, np.nan_to_num([low_at, high_at]))
@@ -333,9 +349,11 @@ def certainty(subject):
 
 def _certainty(solution):
     found = {"power balance, relative to the largest power that flows": number(solution.power_residual, 2)}
-    for name, label, unit in (("balancing_torque", "torque", "N·m"), ("|O|", "reaction O", "N")):
+    for name, label, unit in (("balancing_torque", "torque", "N m"), ("|O|", "reaction O", "N")):
         if name.strip("|") in solution.reactions or name in solution.scalars:
-            found[f"rounding error of the {label}, proven bound [{unit}]"] = _bound(solution, name)
+            factor, shown = shown_units().of(unit)
+            title = f"rounding error of the {label}, proven bound [{pretty_unit(shown)}]"
+            found[title] = _bound(solution, name, factor)
     try:
         condition = solution.condition
     except NotGivenError:
@@ -353,10 +371,10 @@ def _certainty(solution):
     return found
 
 
-def _bound(solution, name):
+def _bound(solution, name, factor):
     """Largest rounding-error bound over the turn; below it notes on outliers and on angles without a bound."""
     try:
-        bounds = solution.error_bound(name)
+        bounds = factor * solution.error_bound(name)
     except NotGivenError:
         return "not given"
     proven = np.isfinite(bounds)
@@ -411,7 +429,7 @@ def parts(subject):
     found = sizing_table(subject.case.sizing, subject.solutions)
     shown = []
     for name, part in subject.case.sizing.items():
-        own = found.loc[name].rename_axis("number")
+        own = shown_units().table(found.loc[name].rename_axis("number"))
         meanings = {number: f"{row.meaning}; {row.formula}" for number, row in part.rows.items()}
         own = texts_of(own).assign(formula=[meanings[number] for number in own.index])
         rows = [list(row) for row in own.itertuples()]
@@ -454,7 +472,8 @@ def inputs(subject):
         unit = next(machine.given[path][1] for machine in machines if path in machine.given)
         if not any(isinstance(value, str) or (value is not None and np.any(value)) for value in values):
             continue
-        factor, shown = (180.0 / np.pi, "°") if unit == "rad" else (1.0, pretty_unit(unit))
+        factor, shown = display_unit(unit, [np.zeros(1)])
+        shown = pretty_unit(shown)
         cells = [_cell(value, factor) for value in values]
         if len(set(cells)) == 1:
             common.append([path, shown, cells[0]])

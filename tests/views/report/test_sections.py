@@ -24,13 +24,14 @@ def test_glance_has_a_row_for_each_machine():
     assert cells["ratio of means"] == f"{saw.mean_torque_ratio:.4g} ×"
     assert float(cells["largest reaction O [N]"]) == pytest.approx(ks.extremes(saw.balanced, "O").largest, rel=1e-4)
     assert float(cells["power balance"]) < 1e-14
-    assert "power lost [W]" not in found.columns
+    assert {"power lost [W]", "mean torque [N·m]", "mean power [W]"}.isdisjoint(found.columns)  # all of them 0
 
 
-def test_glance_shows_lost_power():
-    found = tables.glance(RUBBING())
-    lost = RUBBING().machines["plain"].solution.losses.total
-    assert table_of(found, "plain")[found.columns.index("power lost [W]")] == f"{lost:.5g}"
+def test_glance_shows_lost_power_and_means_of_the_drive():
+    found, solution = tables.glance(RUBBING()), RUBBING().machines["plain"].solution
+    cells = dict(zip(found.columns, table_of(found, "plain"), strict=True))
+    assert cells["power lost [W]"] == cells["mean power [W]"] == f"{solution.losses.total:.5g}"
+    assert cells["mean torque [N·m]"] == f"{solution.mean_torque:.5g}"
 
 
 def test_extremes_state_the_resolution_of_load_functions():
@@ -80,7 +81,13 @@ def test_swing_stands_with_its_published_figures():
 
 
 def test_one_machine_is_compared_with_nothing():
-    assert tables.comparisons(subject_of(plain())) == []
+    alone = subject_of(plain())
+    assert tables.comparisons(alone) == []
+    assert "atio" not in tables.glance(alone).note
+    pytest.importorskip("bokeh")
+    assert not re.search(
+        r"machine's name|[Rr]atio of means|data-machine=", html.page(alone).split("application/json")[0]
+    )
 
 
 def test_report_extremes_are_the_librarys():

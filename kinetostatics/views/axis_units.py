@@ -1,0 +1,106 @@
+"""What all plots can do: draw in the units that the user chooses, and several machines with a panel for each.
+
+`display_unit` of the canvas scales values to the chosen units. Axes with a fixed unit in their label, such as "x [m]"
+of a drawing or the crank angle in degrees, keep their data; their ticks show the chosen unit.
+"""
+
+import inspect
+from collections.abc import Mapping
+from functools import wraps
+from typing import Any
+
+import numpy as np
+from matplotlib.ticker import AutoLocator, FuncFormatter, ScalarFormatter
+
+from ..numbers import checks
+from ..numbers.formatting import heading, number, parse_heading
+from ..numbers.output_units import shown_in, shown_units
+from .canvas import panels
+
+UNITS_ENTRY = """    units : dict of dimension to unit, optional
+        Units of values and axes, {"force": "kN"}, as for `in_units`.
+"""
+UNITS_SENTENCE = '`units`, {"force": "kN"}, chooses the units of values and axes, as for `in_units`.'
+"""What `with_units` adds to docstrings, those with a list of parameters and those without."""
+
+
+class ScaledLocator(AutoLocator):
+    """Round tick values in a unit other than that of the data."""
+
+    def __init__(self, factor, unit):
+        super().__init__()
+        self.axis: Any
+        self.factor, self.unit = factor, unit
+
+    def __call__(self):
+        return self.tick_values(*self.axis.get_view_interval())
+
+    def tick_values(self, vmin, vmax):
+        return super().tick_values(self.factor * vmin, self.factor * vmax) / self.factor
+
+
+def scale_axes(several):
+    """Show the chosen units on axes whose labels name another unit of that dimension."""
+    for axis in (axis for ax in several for axis in (ax.xaxis, ax.yaxis)):
+        name, unit = parse_heading(axis.get_label_text())
+        factor, shown = shown_units().of(unit)
+        locator = axis.get_major_locator()
+        if shown != unit:
+            axis.set_major_locator(ScaledLocator(factor, shown))
+            axis.set_major_formatter(FuncFormatter(lambda value, _, factor=factor: number(factor * value)))
+            axis.set_label_text(heading(name, shown))
+        elif isinstance(locator, ScaledLocator) and locator.unit != unit:  # drawn before in other units
+            axis.set_major_locator(AutoLocator())
+            axis.set_major_formatter(ScalarFormatter())
+
+
+def with_units(plot):
+    """The plot with the option `units`."""
+    own = inspect.signature(plot)
+
+    @wraps(plot)
+    def drawn(*given, units=None, **options):
+        with shown_in(units):
+            found = plot(*given, **options)
+            drawn_on = np.ravel(getattr(getattr(found, "_fig", found), "axes", found))
+            scale_axes([ax for ax in drawn_on if hasattr(ax, "xaxis")])
+        return found
+
+    option = inspect.Parameter("units", inspect.Parameter.KEYWORD_ONLY, default=None)
+    vars(drawn)["__signature__"] = own.replace(parameters=[*own.parameters.values(), option])
+    head, rule, rest = (plot.__doc__ or "").partition("    Parameters\n    ----------\n")
+    listed, _, rest = rest.partition("\n\n")
+    text = f"{head}{rule}{listed}\n{UNITS_ENTRY}\n{rest}"
+    drawn.__doc__ = text if rule else head.replace("    Examples\n", f"    {UNITS_SENTENCE}\n\n    Examples\n")
+    return drawn
+
+
+def one_panel_each(plot, width, height, columns=1, pad=6.0):
+    """The plot, which of a mapping of label to machine draws a panel for each and returns a list of Axes.
+
+    Width and height of a panel in inches; `pad` is the distance of its title, typographic points.
+    """
+    own = inspect.signature(plot)
+    first = next(iter(own.parameters))
+
+    @wraps(plot)
+    def drawn(*given, **options):
+        call = own.bind(*given, **options)
+        named, ax = call.arguments[first], call.arguments.get("ax")
+        if not isinstance(named, Mapping):
+            return plot(*given, **options)
+        several = list(np.ravel(() if ax is None else ax))
+        if named and ax is None:
+            several = panels(len(named), columns, width, height)[1]
+        checks.require(
+            plot.__name__,
+            None if named else "there is nothing to draw",
+            None if len(several) == len(named) else f"ax must be {len(named)} Axes, got {checks.shown(ax)}",
+        )
+        for part, (label, item) in zip(several, named.items(), strict=True):
+            call.arguments |= {first: item, "ax": part}
+            plot(*call.args, **call.kwargs)
+            part.set_title(": ".join(filter(None, [str(label), part.get_title()])), fontsize="medium", pad=pad)
+        return several
+
+    return drawn
