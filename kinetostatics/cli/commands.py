@@ -184,13 +184,14 @@ def explain(options):
     require_writable(case, "--out", options.out, tuple(EXPLANATIONS))
     name = case.reference if options.variant is None else options.variant
     told = case.variant(name).scene.solve(options.angle).explain(options.quantity, options.angle)
-    print_folded(f"{case.title}: {variant_words(name, options, 'the reference')}\n")
-    print(told)
     if options.out:
         written = getattr(told, EXPLANATIONS[Path(options.out).suffix.lower()])
         with files.write_atomically(options.out) as temporary:
             Path(temporary).write_text(f"{written}\n", encoding="utf-8")
-        print(f"\nwrote {options.out}")
+        print(options.out)
+    else:
+        print_folded(f"{case.title}: {variant_words(name, options, 'the reference')}\n")
+        print(told)
 
 
 def plot(options):
