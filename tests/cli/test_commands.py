@@ -193,7 +193,7 @@ def test_a_new_case_never_takes_the_place_of_a_file(tmp_path, capsys):
     path.write_text("old", encoding="utf-8")
     for name in (path, path.with_suffix("")):
         assert main(["new", str(name)]) == 2
-        assert f"{path} is there already; give another name" in capsys.readouterr().err
+        assert f"{path} exists already; give another name" in capsys.readouterr().err
     assert path.read_text(encoding="utf-8") == "old"
 
 

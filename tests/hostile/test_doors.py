@@ -288,7 +288,7 @@ MIXED = [
     ("two-mass coupler", solved(ks.crank_slider(0.1, 0.4, slider=ks.Link(5.0))), "O", "no coupler mass"),
     ("two-mass coupler", solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no coupler mass"),
     *((name, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "fan is only a crank") for name in BY_TURN),
-    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "evenly over one turn"),
+    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "even crank angles over one turn"),
     ("spectral differentiation", solved(MACHINE, TURN[:4] * 6), "O", "8 samples are more than the 4"),
 ]  # fmt: skip
 
