@@ -8,7 +8,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.lazy import cached_property
 
 MAX_SPEED_RATIO = 2.0
@@ -206,6 +206,7 @@ class Motor:
         return self.transmission**2 * self.slope(self.transmission * crank_speed)
 
 
+@with_units(power="W", speed="rad/s", synchronous_speed="rad/s", transmission="1", inertia="kg m2")
 @dataclass(frozen=True, eq=False)
 class Kloss(Motor):
     """Induction motor; see `Motor.kloss`."""
@@ -214,8 +215,6 @@ class Kloss(Motor):
     speed: float
     synchronous_speed: float
     overload: float
-
-    __repr__ = repr_with_units(power="W", speed="rad/s", synchronous_speed="rad/s", transmission="1", inertia="kg m2")
 
     @cached_property
     def breakdown_torque(self):
@@ -247,14 +246,13 @@ class Kloss(Motor):
         return MAX_SPEED_RATIO * self.synchronous_speed
 
 
+@with_units(standstill_torque="N m", idle_speed="rad/s", inertia="kg m2")
 @dataclass(frozen=True, eq=False)
 class Linear(Motor):
     """Motor with a straight line of torque, level where the idle speed is infinite; see `Motor.linear`, `constant`."""
 
     standstill_torque: float
     idle_speed: float
-
-    __repr__ = repr_with_units(standstill_torque="N m", idle_speed="rad/s", inertia="kg m2")
 
     def torque(self, speed):
         return self.standstill_torque * (1.0 - speed / self.idle_speed)
@@ -267,14 +265,13 @@ class Linear(Motor):
         return MAX_SPEED_RATIO * self.idle_speed
 
 
+@with_units(speeds="rad/s", torques="N m", inertia="kg m2")
 @dataclass(frozen=True, eq=False)
 class TableMotor(Motor):
     """Motor by a table; see `Motor.table`. Straight lines continue the curve, so that iterations can return."""
 
     speeds: np.ndarray
     torques: np.ndarray
-
-    __repr__ = repr_with_units(speeds="rad/s", torques="N m", inertia="kg m2")
 
     def torque(self, speed):
         inside = np.clip(speed, *self.limits)
