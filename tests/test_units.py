@@ -629,7 +629,7 @@ NO_NUMBERS = {
     *("quantity", "quantities", "parameters", "path", "on_gap", "outputs", "minimise", "maximise", "robust", "vary"),
     *("begin", "progress", "ax", "joints", "joint", "by", "order", "like", "table", "output", "needs", "found", "cams"),
     *("precision", "device", "reaction", "before", "opposing", "cuts", "spring", "left", "right", "result", "marks"),
-    *("planet", "numbers"),
+    *("planet", "numbers", "units"),
     *("bars", "shaft", "masses", "bar", "material", "arrangement", "correction", "peened", "kind", "shares", "raw"),
     *("laws", "contacts", "side", "segments", "smooth", "powers", "force", "norm", "balanced", "spread"),
     *(

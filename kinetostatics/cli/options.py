@@ -1,6 +1,7 @@
 """Options of the command line: its commands with their options, the types of these, and the parser."""
 
 import argparse
+import textwrap
 from functools import partial
 from typing import Any
 
@@ -10,18 +11,32 @@ from ..numbers.formatting import normalise
 from ..numbers.output_units import output_units
 from ..numbers.units import to_si
 from ..version import __version__
-from .output import STDOUT
+from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
 STARTERS = ("crank-slider", "four-bar", "chain")
 """Mechanisms of the case files to start from."""
 
-EPILOG = (
+WIDTH_NOTE = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
-    "wider. For other programs: --json, and --csv where there is a table, write numbers in full and nothing else."
+    "wider."
 )
-"""End of the help of every command."""
+EXAMPLES = {
+    "list": "kinetostatics list",
+    "new": "kinetostatics new press --kind four-bar",
+    "run": "kinetostatics run sawframe_2r63 --variant cam-circle --shares O",
+    "compare": "kinetostatics compare sawframe_2r63 --csv coefficients.csv",
+    "explain": 'kinetostatics explain sawframe_2r63 --angle "39.3 deg" --quantity O',
+    "drive": 'kinetostatics drive sawframe_2r63 --start "90 deg"',
+    "plot": "kinetostatics plot compressor --out figures --format svg",
+    "report": "kinetostatics report compressor --out compressor.html",
+    "precision": "kinetostatics precision compressor --out precision",
+    "sweep": 'kinetostatics sweep sawframe_2r63 --vary "slider.mass=500..700 kg:5" --output "largest O"',
+    "design": "kinetostatics design sawframe_2r63 --out found.toml",
+    "stability": "kinetostatics stability --out stability",
+}
+"""A call of each command."""
 
 
 def _text(text):
@@ -229,17 +244,28 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
 """By name: module and function, which are imported when the command runs, a line of help, and the options."""
 
 
+def _epilog(example, *notes):
+    """End of a help: an example, and notes folded to the width of the terminal."""
+    return "\n\n".join([f"example:\n  {example}", *(textwrap.fill(note, width()) for note in notes)])
+
+
 def parser():
     """The parser; ``options.command`` is module and function of the command, ``options.word`` its name."""
+    styled = {"formatter_class": argparse.RawDescriptionHelpFormatter}
     main = argparse.ArgumentParser(
         prog="kinetostatics",
         description="Forces and drive torque of planar mechanisms, from a case file.",
-        epilog=EPILOG,
+        epilog=_epilog(EXAMPLES["run"], WIDTH_NOTE),
+        **styled,
     )
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
     for name, (function, text, *options) in COMMANDS.items():
-        command = group.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=EPILOG)
+        formats = " and ".join(option for option, _ in options if option in ("--json", "--csv"))
+        epilog = _epilog(EXAMPLES[name], *([f"For other programs: {formats}, numbers in full."] if formats else []))
+        command = group.add_parser(
+            name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=epilog, **styled
+        )
         command.set_defaults(command=function, word=name)
         for option, settings in options:
             command.add_argument(option, **settings)

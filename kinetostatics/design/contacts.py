@@ -176,8 +176,10 @@ ROLLER_RULES: dict[str, tuple[str, dict[str, Any]]] = {
     "roller_inertia": ("kg*m**2", {"low": 0.0}),
     "load_rating": ("N", POSITIVE),
 }
-ROLLER_ONLY = (*ROLLER_RULES, "pin_load", "friction_coefficient", "life")
-"""Numbers and limits of the roller on its pin, which is computed for a `CamRoller` only."""
+ROLLER_DEFAULTS = (0.0, 10 / 3)
+"""Mass and life exponent by default."""
+ROLLER_LIMITS = ("pin_load", "friction_coefficient", "life")
+"""Limits of the roller on its pin, which are computed for a `CamRoller` only."""
 MATERIAL_RULES: dict[str, tuple[str, dict[str, Any]]] = {
     "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS_RULE.usual}),
     "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
@@ -193,10 +195,10 @@ def contact(
     poissons_ratio=None,
     *,
     follower=None,
-    roller_mass=None,
+    roller_mass=0.0,
     roller_inertia=None,
     load_rating=None,
-    life_exponent=None,
+    life_exponent=10 / 3,
     limits=None,
 ):
     """Contact of a roller or flat face with its cam over the turn, and exceeded limits.
@@ -213,14 +215,14 @@ def contact(
     follower : str, optional
         Link of the follower, "follower" or "arm" with its label, if there are several; the default is the `CamRoller`,
         or the only follower. A follower takes none of the four numbers of the roller below, nor limits of them.
-    roller_mass : float, optional
-        Mass of the roller, a part of the block's mass, kg; default 0.
+    roller_mass : float
+        Mass of the roller, a part of the block's mass, kg.
     roller_inertia : float, optional
         About its pin, kg m2; default m R^2 / 2.
     load_rating : float, optional
         Basic dynamic load rating C of its bearing (ISO 281), N.
-    life_exponent : float, optional
-        10/3 for roller bearings, the default; 3 for ball bearings.
+    life_exponent : float
+        10/3 for roller bearings, 3 for ball bearings.
     limits : dict of str to float, optional
         Largest "pressure" (Pa), "pin_load" (N), "friction_coefficient", "pressure_angle" (rad) and "starting_torque"
         (N m); smallest convex "curvature_radius" (m), "life" (h) and "lift_off_speed" (rad/s); see `Contact.exceeded`.
@@ -255,11 +257,11 @@ def contact(
     limits = {} if limits is None else limits
     known = limits if isinstance(limits, dict) else {}
     own = {"roller_mass": roller_mass, "life_exponent": life_exponent}
-    own |= {"roller_inertia": roller_inertia, "load_rating": load_rating}
-    own = {name: value for name, value in own.items() if value is not None}
+    optional = {"roller_inertia": roller_inertia, "load_rating": load_rating}
+    own |= {name: value for name, value in optional.items() if value is not None}
     values = checks.single_numbers(
         "contact",
-        *(_follower_problems(led, roller_radius, [*own, *known]) if of_follower else ()),
+        *(_follower_problems(led, roller_radius, own, known) if of_follower else ()),
         *_limit_problems(limits, load_rating),
         **_contact_rules(given, group, part),
         **{name: (value, *ROLLER_RULES[name]) for name, value in own.items()},
@@ -272,10 +274,9 @@ def contact(
         of_disk = FollowerContact(solution, group.disk, *size, limits=kept, follower=group)
         of_disk.require_no_undercut()
         return of_disk
-    radius, mass = values["roller_radius"], values.get("roller_mass", 0.0)
+    radius, mass = values["roller_radius"], values["roller_mass"]
     inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
-    bearing = values.get("load_rating"), values.get("life_exponent", 10 / 3)
-    wheel = Roller(group.cam, radius, mass, inertia, *bearing)
+    wheel = Roller(group.cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
     found = Contact(solution, group.cam, *size, limits=kept, roller=wheel)
     for side in found.sides:
         working_curve(group.cam, radius, 8, side)
@@ -298,11 +299,12 @@ def _group_of(mechanism, follower):
     return (*mechanism.led_by_ground, *groups.values())[0]
 
 
-def _follower_problems(led, roller_radius, given):
+def _follower_problems(led, roller_radius, own, limits):
     """Sentences about numbers and limits, by name, that the contact of a follower does not have."""
     if led.flat and roller_radius is not None:
         yield f"the {led.link} has a flat face, so it takes no roller_radius"
-    if names := [name for name in given if name in ROLLER_ONLY]:
+    given = [name for name, value in own.items() if not (isinstance(value, float) and value in ROLLER_DEFAULTS)]
+    if names := [*given, *(name for name in limits if name in ROLLER_LIMITS)]:
         yield f"load and life of a roller are computed for a CamRoller only; the {led.link} takes no {', '.join(names)}"
 
 

@@ -1,4 +1,4 @@
-"""A hand calculation as data and as pages: text for the terminal, LaTeX, and HTML with MathML."""
+"""A hand calculation as data, text for the terminal, LaTeX, and HTML with MathML."""
 
 import re
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from ..numbers.lazy import cached_property
 from .formats import format_number
 
 WIDTH = 80
-"""Characters in a line of text."""
+"""Number of characters in a line of text."""
 NOTE = (
     "A prime is a derivative by the crank angle phi: velocities are first derivatives times the crank speed omega, "
     "accelerations second ones times omega squared, and first ones times the crank acceleration alpha. Moments on a "
@@ -39,14 +39,14 @@ class Step(NamedTuple):
     title : str
         Heading: a link, a load, the forces on a part.
     words : str
-        What the number is; a given number has its path.
+        Description of the number; a given number has its path.
     symbol : str
     formula, numbers : str
-        In symbols of steps before, and with their values; "" of a given number.
+        Formula in symbols of earlier steps, and with their values; "" for a given number.
     value : float
     unit : str
     shown : str
-        The value as it is printed: to 6 digits, 0 where it is rounding.
+        The printed value: 6 digits, 0 where it is rounding.
     latex, mathml : tuple of str
         Symbol, formula, numbers and value.
     """
@@ -65,19 +65,19 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Explanation:
-    """A hand calculation; made by `Solution.explain`, shown by ``print``, as a page in notebooks.
+    """A hand calculation from `Solution.explain`; ``print`` shows it as text, notebooks as a page.
 
     Attributes
     ----------
     mechanism, quantity, label : str
-        Names, of the quantity also in words.
+        Names; `label` describes the quantity in words.
     angle : float
         Crank angle, rad.
     steps : tuple of Step
     results : tuple of Step
-        Those of them that give the quantity, of a vector its components.
+        The last steps, which give the quantity or its components.
     value : float or array (2,)
-        The quantity as the solution gives it, but for the last rounding.
+        The quantity of the solution, to rounding.
     unit : str
 
     Examples
@@ -106,7 +106,7 @@ class Explanation:
 
     @property
     def conclusion(self):
-        """The quantity and its value, of a vector the magnitude too."""
+        """The quantity and its value, for a vector also the magnitude."""
         values = [step.shown for step in self.results] or [format_number(float(part)) for part in np.ravel(self.value)]
         if np.ndim(self.value):
             unit = "" if self.unit == "1" else f" {self.unit}"
@@ -153,7 +153,7 @@ class Explanation:
 
     @cached_property
     def html(self):
-        """The calculation as a piece of HTML, formulas as MathML; it loads nothing from elsewhere."""
+        """The calculation as a piece of HTML, formulas as MathML; it needs no other files."""
         found = [f'<div class="explanation">{STYLE}<h3>{escape(self.title)}</h3>', f"<p>{escape(NOTE)}</p>"]
         for title, steps, groups in self._sections:
             found.append(f"<h4>{escape(title)}</h4>")
@@ -175,13 +175,13 @@ class Explanation:
 
     @property
     def page(self):
-        """The same as a whole page of HTML."""
+        """The calculation as a complete HTML page."""
         head = f'<meta charset="utf-8"><title>{escape(self.title)}</title>'
         return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{self.html}\n</body></html>'
 
     @property
     def _sections(self):
-        """Headings, each with its steps, and with pairs of words and the steps that have them in common."""
+        """Headings, each with its steps, and with pairs of words and the steps that share them."""
         for title, found in groupby(self.steps, key=lambda step: step.title):
             steps, groups = list(found), []
             for words, alike in groupby(steps, key=lambda step: step.words):
@@ -236,7 +236,7 @@ def _text_lines(step):
 
 
 def _break(line, start):
-    """Where to break a line: before a sum's sign or after a product's, outside of as many brackets as possible."""
+    """Place of a line break: before a sum's sign or after a product's, outside as many brackets as possible."""
     found, depth = [(-inf, 0)], 0
     for place, sign in enumerate(line[: WIDTH + 1]):
         depth += (sign == "(") - (sign == ")")

@@ -1,4 +1,4 @@
-"""Symbols of numbers and quantities in hand calculations, and how formulas are written: text, LaTeX and MathML."""
+"""Symbols of numbers and quantities in hand calculations, and formulas as text, LaTeX and MathML."""
 
 import re
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from ..numbers.formatting import number, shortest_exact
 class Symbol(NamedTuple):
     """Symbol of a number: ("F", "x", "slider") is the x component of force F of the slider.
 
-    `primes` is the order of the derivative by the crank angle, `again` the number among several spelled alike.
+    `primes` is the order of the derivative by the crank angle, `again` the number among equal spellings.
     """
 
     base: str
@@ -104,7 +104,7 @@ def quantity_symbol(quantity):
 
 
 SUM, NEGATIVE, PRODUCT, POWER, ATOM = range(5)
-"""Precedence of a part of a formula: a part of lower precedence than its place asks for gets brackets."""
+"""Precedence of a part of a formula: a part of lower precedence than its place requires gets brackets."""
 
 
 class Style(NamedTuple):
@@ -119,7 +119,7 @@ class Style(NamedTuple):
     power: str
     brackets: str
     call: str
-    """Of a function's name and its arguments; of some functions another, in `calls`."""
+    """Template of a function's name and arguments; `calls` has others for some functions."""
     comma: str
     calls: dict[str, str]
     stands_alone: bool
@@ -127,7 +127,7 @@ class Style(NamedTuple):
 
 
 def write_formula(tree, style, name):
-    """A formula in a style; ``name(index)`` gives the `Symbol` or the value that stands for a named number."""
+    """A formula in a style; ``name(index)`` gives the `Symbol` or the value of a named number."""
     return _write(tree, style, name)[0]
 
 

@@ -22,9 +22,9 @@ def formula(node, ends, stands_for=MappingProxyType({}), guarded=()):
     """Tree of a recorded number: tuples of a kind and its parts.
 
     Kinds are "number" of a value, "name" of a node by its place in the graph, "sum" of pairs (sign, part), "product" of
-    parts, "negative", "quotient", "power" and "call". The formula ends at the nodes in `ends`, but for the node itself.
-    `stands_for` gives a node that replaces another of the same value; `guarded` are divisors at their least value,
-    which are shown as "max" with that value.
+    parts, "negative", "quotient", "power" and "call". The formula ends at the nodes in `ends`, except the node itself.
+    `stands_for` maps a node to another of the same value; `guarded` are divisors at their least value,
+    shown as "max" with that value.
     """
     if not isinstance(node, Node):
         return ("negative", ("number", -float(node))) if node < 0 else ("number", float(node))
@@ -118,7 +118,7 @@ def _call(name, part):
 
 
 def _larger(left, right):
-    """Parts of 0.5 (a + b + |a - b|), the larger of two; None if that is something else."""
+    """Parts of 0.5 (a + b + |a - b|), the larger of two; None for any other sum."""
     if left != ("number", 0.5) or right[0] != "sum":
         return None
     terms = [part for sign, part in right[1:] if sign > 0]

@@ -43,7 +43,7 @@ DEAD_CENTRES = {
     "phi_n": "crank angle of the near dead centre",
     "phi_0": "crank angle of the dead centre at which the table begins",
 }
-"""Words for the angles at which the stroke of a load's slider is read."""
+"""Words for the angles at which the stroke of a load's slider is evaluated."""
 
 
 class NamedRecorder(Recorder):
@@ -71,7 +71,7 @@ class Names:
     """Names `of` the nodes of a graph.
 
     `modules` are those besides `KERNELS` whose local variables give names, of the user's groups and loads. `laws` are
-    shown in place of the iterations whose results satisfy them, and may contain later numbers. `stands_for` gives the
+    shown instead of iterations whose results satisfy them, and may contain later numbers. `stands_for` gives the
     named number of the same value that formulas use instead of a node.
     """
 
@@ -84,9 +84,9 @@ class Names:
 
     @contextmanager
     def under(self, title):
-        """Put all that is computed within under a heading, and name local variables of kernels.
+        """Put all calculations of the block under a heading, and name local variables of kernels.
 
-        If a profiler runs already it keeps running, and lines of kernels have no names.
+        If a profiler is already active it stays active, and lines of kernels have no names.
         """
         before, self.title = self.title, title
         if title not in self.titles:
@@ -132,12 +132,12 @@ class Names:
                 self.of[node] = Named(symbol, self.title, words, kind=kind)
 
     def number(self, value, symbol, words="", unit="", again=False, turned="onward"):
-        """Name a number and return it, or a node that stands for it.
+        """Name a number and return it, or an equivalent node.
 
         A number that already has a name of the mechanism gets a second one only with `again`. The recorder moves the
         sign of a negated number into sums, where its name would be lost: the returned node keeps the name if `turned`
         is "onward", formulas use it also for earlier uses if "everywhere"; "within" names the number itself. A number
-        that is always zero is named only if `turned` is "always", as results are.
+        that is always zero is named only if `turned` is "always", like results.
         """
         node = node_of(value)
         if node is None or (self.has_own_name(node) and (not again or self.of[node].symbol == symbol)):
@@ -168,7 +168,7 @@ class Names:
         return node in self.of and self.of[node].kind in ("protocol", "given")
 
     def symbols(self, nodes):
-        """Symbols of nodes, numbered where several are spelled alike."""
+        """Symbols of nodes, numbered if several have the same spelling."""
         counts: dict[Symbol, int] = {}
         found = {}
         for node in nodes:
@@ -179,7 +179,7 @@ class Names:
 
 
 def _vanishes(node, depth=4):
-    """Whether a recorded number is zero for all inputs, as far as a few operations show."""
+    """Whether a recorded number is zero for all inputs, as far as a few operations can show."""
     if not isinstance(node, Node):
         return node == 0.0
     if node.operation in INPUTS or not depth:
@@ -220,7 +220,7 @@ ORDERS = ("", "first", "second")
 def record_with_names(state, paths, units):
     """The scene of a `Dynamics` recorded with names, a `NamedDynamics`, and its recorder.
 
-    `paths` are those of case files by the number's place among the leaves, `units` SI units by path.
+    `paths` maps the place of a number among the leaves to its path, `units` paths to SI units.
     """
     structure, _ = state.apart
     recorder = NamedRecorder(structure)
@@ -335,7 +335,7 @@ class NamedDynamics(Dynamics):
 
     @cached_property
     def gravity(self):
-        """Acceleration by weight, m/s2; None without."""
+        """Acceleration by weight, m/s2; None if absent."""
         with self.names.under(WEIGHT):
             return self.names.vector(super().gravity, Symbol("g"), "acceleration by weight", "m/s2")
 
@@ -372,7 +372,7 @@ class NamedDynamics(Dynamics):
 
     @property
     def acting(self):
-        """Loads by link and forces along guides by slider as groups resolve them."""
+        """Loads by link and forces along guides by slider, as input of the groups."""
         self.placement, self.link_loads, self.pushes  # noqa: B018  named first
         with self.names.under("Inertia and springs along guides"):
             return super().acting
@@ -383,12 +383,12 @@ class NamedDynamics(Dynamics):
         return self.names.number(super().departure(item), Symbol("w", "", item.on), words, "m")
 
     def outward(self, item):
-        """Elongation of a spring on a slider, or its opposite, as a length of the design and some more, m."""
+        """Elongation of a spring on a slider, or its opposite, as a length of the design and a remainder, m."""
         if (found := super().outward(item)) is None:
             return None
         length, more = found
         elongation = f"the elongation of the spring on the {item.on}, or its opposite,"
-        words = f"how much {elongation} is more than a length of the cam"
+        words = f"{elongation} less a length of the cam"
         return length, self.names.number(more, Symbol("u", "", item.on), words, "m")
 
     @cached_property
@@ -398,7 +398,7 @@ class NamedDynamics(Dynamics):
         owners = [(name, "") for name in (*self.mass_loads, *(name for name, _ in wrenches))]
         owners += [(name, "s") for name in self.pushes]
         with self.names.under("Powers"):
-            words = (f"power of what acts on the {owner} over the crank speed" for owner, _ in owners)
+            words = (f"power of the loads on the {owner} over the crank speed" for owner, _ in owners)
             return [
                 self.names.number(power, Symbol("W", axis, owner), text, "N m")
                 for (owner, axis), power, text in zip(owners, super().powers, words, strict=True)
@@ -430,7 +430,7 @@ class _NamedFrictionSolver(FrictionSolver):
                     names.number(loads[name].moment, Symbol("M", "", name), f"moment {words}", "N m"),
                 )
                 if name in along:
-                    words = f"what acts on the {name} along its guide besides"
+                    words = f"other loads on the {name} along its guide"
                     along[name] = names.number(along[name], Symbol("F", "s", name), words, "N")
             names.reading, self.laws = not any(name in self.acting for name in part.pairs), []
             resolved = super().__call__(part, placement, loads, along)
@@ -449,7 +449,7 @@ class _NamedFrictionSolver(FrictionSolver):
                 node = node_of(amount)
                 if node is not None and size is not None and size is not node:
                     names.laws[node], named = size, names.of[node]
-                    names.of[node] = named._replace(words=f"{named.words}, found together with the reactions")
+                    names.of[node] = named._replace(words=f"{named.words}, solved together with the reactions")
         return resolved
 
     def _amounts(self, equations, laws, placement):

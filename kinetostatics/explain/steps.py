@@ -1,7 +1,7 @@
-"""Lines of a calculation: which recorded numbers have a formula of their own, their values and units.
+"""Lines of a calculation: which recorded numbers have their own formula, their values and units.
 
 A formula ends at numbers named by the mechanism or by a kernel's `TERMS`; at another line of a kernel if it is used
-more than once or the formula would be too long. So every number in a formula is given or stands in a line before it.
+more than once or the formula would be too long. So every number in a formula is given or appears in an earlier line.
 """
 
 import math
@@ -17,13 +17,13 @@ from .formulas import formula, names_in
 from .named_recording import Named, Symbol
 
 MAX_FORMULA_SIZE = 12
-"""Most named numbers and constants in one formula; a longer one is split."""
+"""Largest number of names and constants in a formula; a longer formula is split."""
 NOISE_RATIO = 2.0**-51
-"""Largest value, relative to the sum of its terms (`_size`), that is shown as 0: it is rounding."""
+"""Largest value, relative to the sum of its terms (`_size`), that is shown as 0, because it is rounding."""
 
 
 class Line(NamedTuple):
-    """A number, its formula (`formulas`; None of a given number) and its value, which may be zero but for rounding."""
+    """A number, its formula (`formulas`; None for a given number) and its value, which may be zero to rounding."""
 
     named: Named
     tree: Any
@@ -129,7 +129,7 @@ def _ends(names, outputs, guarded):
 
 
 def _largest(parts, ends, sizes, names):
-    """The largest part that is no end yet; if it has no name, the largest named part inside it that is large."""
+    """The largest part that is not yet an end; if it has no name, its largest named part of sufficient size."""
     whole = max((part for part in parts if part not in ends), key=sizes.__getitem__)
     inner = whole
     while inner not in names.of:
@@ -151,7 +151,7 @@ def _parts(names, node):
 
 
 def _in_order_of_use(names, outputs):
-    """Nodes that outputs are computed from, operands first, without iterations of friction."""
+    """Nodes that the outputs depend on, operands first, without iterations of friction."""
     reached: set[Node] = set()
     waiting = list(outputs)
     while waiting:
@@ -216,7 +216,7 @@ def _size(node, values, sizes):
 
 
 def _powers(names, node, known):
-    """Powers of m, kg and s of a number's unit, from those of its operands; None of a constant."""
+    """Powers of m, kg and s of a number's unit, from those of its operands; None for a constant."""
     named, kind = names.of.get(node), node.operation
     if named is not None and named.unit:
         return dimension(named.unit)

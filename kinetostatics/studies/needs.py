@@ -1,10 +1,10 @@
 """The smallest model of a scene that keeps a quantity within a tolerance.
 
 `needs` runs every combination of simplifications, counts the operations at each crank angle, and names the cheapest
-combination within the tolerance. Errors may cancel, so a simplification that alone changes too much is still tried
-beside others, unless there are too many models.
+combination within the tolerance. Errors may cancel. So a simplification with too large an error is still tried in
+combinations, unless there are too many models.
 
-`simplifications` makes each of them, such as "no spring", from a solution.
+`simplifications` makes each simplified solution, such as "no spring".
 """
 
 import itertools
@@ -25,7 +25,7 @@ from .simplifications import ingredients
 MAX_MODELS = 2_000
 """Largest number of combinations that `needs` runs: a minute of work."""
 PROGRESS_DELAY = 10.0
-"""Seconds before a progress bar appears."""
+"""Time until a progress bar appears, s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Model:
 
 @dataclass(frozen=True, eq=False)
 class Needs:
-    """The models that a quantity needs; made by `needs`.
+    """The models that a quantity needs; `needs` returns it.
 
     Attributes
     ----------
@@ -65,19 +65,19 @@ class Needs:
         Allowed change of the quantity, relative to its largest value.
     full : Model
     alone : tuple of Model
-        Each simplification by itself.
+        Models with a single simplification.
     ladder : tuple of Model
-        From the full scene down, each the cheapest combination with its error or less.
+        Models from the full scene down: each is the cheapest combination with at most its error.
     smallest : Model
-        The cheapest combination within the tolerance; of equally cheap ones the most simplified. Combinations with the
-        simplifications in `left_out` were not run.
+        The cheapest combination within the tolerance, and of equally cheap ones the most simplified. Combinations with
+        the simplifications in `left_out` were not run.
     tried : int
         Number of combinations run.
     left_out : dict of str to str
         Simplifications that were not tried in combinations, with the reason.
     rigidity : dict of str to Sized
-        By link with a bar, and "shaft": natural frequency, rad/s, its `order`, deflection, relative to the length or in
-        rad, and `departure`, the share of the deflection within which a rigid part is right; ``.table()`` has formulas.
+        By link with a bar, and "shaft": natural frequency, rad/s, its `order`, deflection relative to the length or in
+        rad, and `departure`, the relative error of a rigid part; ``.table()`` has formulas.
 
     Examples
     --------
@@ -105,7 +105,7 @@ class Needs:
             f"{self.full.operations} operations ({saved:.0%} saved), error {self.smallest.error:.2g}; "
             f"{self.tried} models run" + "".join(f"; {name} left out: {why}" for name, why in self.left_out.items())
         ) + "".join(
-            f"; rigid {name} is within {found.departure:.2g}, its frequency {found.order:.3g} times that of the crank"
+            f"; rigid {name}: error {found.departure:.2g}, its frequency {found.order:.3g} times that of the crank"
             for name, found in self.rigidity.items()
         )
 
@@ -117,42 +117,43 @@ class Needs:
     __repr__ = __str__
 
     def frame(self):
-        """Each simplification alone: change of the quantity, and operations and time it saves, a pandas DataFrame."""
+        """Each single simplification: change of the quantity, saved operations and time, a pandas DataFrame."""
         return _frame((self.full, *self.alone), self.quantity, self.full)
 
     def ladder_frame(self):
-        """The rungs from the full scene to the least, a pandas DataFrame."""
+        """The models of `ladder`, a pandas DataFrame."""
         return _frame(self.ladder, self.quantity, self.full)
 
 
 def needs(scene, quantity, within=0.01, *, variant=None, progress=True, bars=None, shaft=None) -> Needs:
     """Find the cheapest model within a tolerance: run every combination of simplifications.
 
-    Simplifications: no gravity, springs, process forces, friction of pins, guides, slots or rollers; constant crank
-    speed; guide through O; mass centres on the links; massless links; links with two joints, such as coupler and
-    rocker, without moment of inertia; the coupler as two masses at its joints; kinematics as Fourier series of one or
-    two harmonics. Links of one kind, such as coupler and coupler2, are simplified together, and so are joints with one
-    kind of friction. Above 2000 combinations, the simplifications that alone change most are left out; a cheaper model
-    in which their errors cancel would be missed. Simplifications that the scene does not allow are left out too, such
-    as two masses for a coupler whose mass centre lies beyond its joints, or harmonics that move a slider beyond the
-    table of its load. `Needs.left_out` lists both with the reason.
+    The simplifications are: no gravity, springs, process forces, or friction of pins, guides, slots or rollers;
+    constant crank speed; guide through O; mass centres on the links; massless links; no moment of inertia of links with
+    two joints; two masses at its joints for each coupler; Fourier series of one or two harmonics.
+
+    Links of one kind, such as coupler and coupler2, are simplified together, and so are joints with one kind of
+    friction. Above 2000 combinations, the simplifications with the largest single errors are left out; a cheaper model
+    with cancelling errors would then be missed. Simplifications that the scene does not allow are also left out: two
+    masses for a coupler whose mass centre is beyond its joints, or harmonics that move a slider beyond the table of its
+    load. `Needs.left_out` lists both with the reason.
 
     Parameters
     ----------
     scene : Solution or Case
-        A solution of a single design, over the crank angles that matter.
+        A solution of a single design, at the relevant crank angles.
     quantity : str
         "balancing_torque", a joint (its reaction, as a vector), "slider_acceleration" ...
     within : float
         Allowed change relative to the quantity's largest value.
     variant : str, optional
-        Of a case; its reference by default.
+        Variant of a case; by default its reference.
     progress : bool
-        Show a progress bar after ten seconds.
+        Whether a progress bar appears after ten seconds.
     bars : mapping of link to Bar, optional
-        Straight links of given section; `Needs.rigidity` compares them with rigid ones.
+        Sections of straight links; `Needs.rigidity` compares them with rigid links.
     shaft : mapping, optional
-        Shaft between drive and crank: "length", m, "polar_moment", m4, "shear_modulus", Pa; compared likewise.
+        Shaft between drive and crank: "length", m, "polar_moment", m4, "shear_modulus", Pa; compared in the same way.
 
     Returns
     -------
@@ -162,8 +163,8 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True, bars=Non
     Raises
     ------
     ParameterError
-        The solution is a batch, the quantity zero throughout, or the tolerance not positive; a bar as for
-        `Solution.sections`, or it lacks `second_moment` or `youngs_modulus`; the crank of a bar or shaft stands.
+        The solution is a batch, the quantity zero throughout, or the tolerance not positive. A bar is invalid for
+        `Solution.sections`, or has no `second_moment` or `youngs_modulus`; the crank of a bar or shaft is at rest.
 
     Examples
     --------
@@ -178,12 +179,12 @@ def needs(scene, quantity, within=0.01, *, variant=None, progress=True, bars=Non
         "needs",
         None if known else f"scene must be a Solution or a Case, got {scene!r}",
         checks.quantity(quantity),
-        "variant is for a case, a solution is of one" if variant and isinstance(scene, Solution) else None,
+        "variant is for a case; a solution has one variant" if variant and isinstance(scene, Solution) else None,
         within=(within, "1", {"low": 0.0, "strict": True}),
     )["within"]
     solution = scene if isinstance(scene, Solution) else scene.solve(variant or scene.reference)
     if len(solution.shape) != 1:
-        raise ParameterError(f"needs looks at one design over its crank angles, but this has shape {solution.shape}")
+        raise ParameterError(f"needs takes a single design over its crank angles, got shape {solution.shape}")
     rigidity = rigidity_of(solution, bars, shaft)
     runs = _ModelRunner(solution, quantity)
     parts = ingredients(solution.mechanism).values()
@@ -212,12 +213,12 @@ class _ModelRunner:
         self._largest = np.linalg.norm(self._exact, axis=0).max()
         if not self._largest > 0:
             raise ParameterError(
-                f"needs: {quantity} is {self._largest} in this scene; there is nothing to compare with"
+                f"needs: {quantity} is {self._largest} in this scene, so relative errors are undefined"
             )
         self.left_out: dict[str, str] = {}
 
     def of(self, choices):
-        """The model with some simplifications; None if the scene does not allow them or one changes nothing."""
+        """The model with some simplifications; None if the scene does not allow them or one has no effect."""
         simplified = self._solution
         for choice in choices:
             try:
@@ -233,7 +234,7 @@ class _ModelRunner:
             with np.errstate(all="ignore"):
                 off = np.array(components(simplified, self._quantity)) - self._exact
                 change = np.linalg.norm(off, axis=0).max() / self._largest
-        except ParameterError as why:  # a load has no value there, as a table over travel
+        except ParameterError as why:  # a load has no value there, such as a table over travel
             self.left_out[" with ".join(names)] = str(why)
             return None
         error = float(change) if math.isfinite(change) else math.inf
@@ -251,7 +252,7 @@ def _choices_by_ingredient(parts, alone, left_out):
     while math.prod(map(len, options())) > MAX_MODELS:
         worst = max(kept, key=lambda choice: alone[choice].error)
         kept.remove(worst)
-        left_out[worst.name] = f"alone it changes {alone[worst].error:.2g}, and there are more than {MAX_MODELS} models"
+        left_out[worst.name] = f"its error is {alone[worst].error:.2g}, and there are more than {MAX_MODELS} models"
     return options()
 
 

@@ -51,19 +51,19 @@ QUANTITY = "balancing_torque"
 def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None):
     """Time and error of every method for one quantity.
 
-    The reference is certified. With friction no crank angle may be one at which a link or slider reverses: friction
+    The reference is certified. With friction no link or slider may reverse at a crank angle, because friction
     jumps there.
 
     Parameters
     ----------
     solution : Solution
-        A single design at its crank angles, a turn of 360 for instance.
+        A single design at its crank angles, for example 360 in a turn.
     quantity : str
         "balancing_torque", a joint (its reaction), "slider_acceleration" ...
     methods : sequence of Method, optional
         `METHODS` by default.
     repeats : int
-        Of each timing; the median counts, without the work done once for a mechanism.
+        Number of timings; the median counts, without the work done once for a mechanism.
     progress : function, optional
         Called with the name of each method before it runs.
 
@@ -71,15 +71,15 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
     -------
     pandas.DataFrame
         A row for each method and setting: time [ns/angle], largest error over the crank angles relative to the
-        quantity's largest value, the bound that the method proves on it (NaN if none), the device, and the reason, with
-        NaN for the three numbers, if a method does not give the quantity.
+        quantity's largest value, its proven bound (NaN if none), and the device. If a method does not give the
+        quantity, the three numbers are NaN, with the reason.
 
     Raises
     ------
     MissingLibraryError
         The `precision` extra is not installed.
     NotGivenError
-        The scene holds something that cannot be certified: a sampled cam, a process force by a function.
+        A part of the scene cannot be certified: a sampled cam, or a process force by a function.
 
     Examples
     --------
@@ -111,12 +111,12 @@ def study(solution, quantity=QUANTITY, *, methods=None, repeats=5, progress=None
 
 
 def front(table):
-    """Rows that no other row beats in both time and error, in order of time.
+    """Rows without another row of smaller time and error, in order of time.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        As of `study`.
+        Result of `study`.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     case : Case
     folder : path
     variants : sequence of str, optional
-        One of each kind of mechanism by default.
+        By default one of each kind of mechanism.
     quantities : sequence of str
     angles : int
         Crank angles over the turn.
@@ -152,7 +152,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     Raises
     ------
     ParameterError
-        Before any work: the files cannot be written there, or would replace files of the case.
+        Before any calculation: the files cannot be written there, or would replace files of the case.
     """
     import pandas as pd
 
@@ -169,7 +169,7 @@ def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=36
     tables = []
     for name in names:
         solution = case.solve(name, angles)
-        if solution.friction:  # off the dead centres, where it jumps
+        if solution.friction:  # away from the dead centres, where it jumps
             solution = solution.at(solution.crank_angle + math.pi / angles)
         for quantity in quantities:
             found = study(solution, quantity, progress=progress)

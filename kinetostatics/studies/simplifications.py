@@ -1,7 +1,7 @@
-"""Parts of a scene that can be left out or simplified, and how each simplification is made.
+"""Simplifications of a scene: parts left out, or replaced by simpler ones.
 
-Among them are the couplers as two point masses, and the kinematics as Fourier series of the joint paths (harmonic
-series of engine theory; Biezeno and Grammel, *Technische Dynamik*).
+They include couplers as two point masses, and kinematics as Fourier series of the joint paths (harmonic series of
+engine theory; Biezeno and Grammel, *Technische Dynamik*).
 """
 
 from collections.abc import Callable
@@ -38,7 +38,7 @@ def placement_from_joints(mechanism, angle, *orders) -> Placement:
     placement = mechanism.crank.place(angle)
     for group in mechanism.groups:
         if not come_from_one_class(type(group), "follow", "place"):
-            raise NotGivenError(f"{type(group).__name__} has no `follow`, to be placed at joints known in another way")
+            raise NotGivenError(f"{type(group).__name__} has no `follow` to place it at known joints")
         group.follow(placement, joints)
     return placement
 
@@ -60,10 +60,10 @@ def paths_over_turn(mechanism, angle):
     """Positions over a whole turn; an error if no joint moves or a group does not close all around."""
     found = joint_positions(mechanism, angle)
     if not found.size:
-        what = "moves no joint but the crank pin" if mechanism.groups else "is a crank alone"
-        raise NotGivenError(f"{mechanism.name} {what}: it has no joint whose path is to be found as a series")
+        what = "moves only the crank pin" if mechanism.groups else "is only a crank"
+        raise NotGivenError(f"{mechanism.name} {what}: no joint has a path for a series")
     if mechanism.turns > 1:
-        raise NotGivenError(f"{mechanism.name} takes {mechanism.turns} turns to repeat, a Fourier series one")
+        raise NotGivenError(f"{mechanism.name} repeats after {mechanism.turns} turns, a Fourier series after one")
     if not np.all(np.isfinite(found)):
         raise NotGivenError(f"{mechanism.name} does not close all around the turn, which a Fourier series needs")
     return found
@@ -114,9 +114,9 @@ class Choice:
 def two_mass_coupler(mechanism, only=None):
     """The mechanism with each coupler replaced by two point masses at its joints; None if no coupler has mass.
 
-    Total mass and the place of the mass centre along the link are kept; the moment of inertia becomes
-    m s (l - s), whatever it was (Biezeno and Grammel, *Technische Dynamik*). A coupler is a bar from a joint of one
-    link to a joint of another (`Mechanism.couplers`); a mass at a joint of the frame does not count.
+    Total mass and position of the mass centre along the link are kept; the moment of inertia becomes m s (l - s)
+    (Biezeno and Grammel, *Technische Dynamik*). A coupler is a bar from a joint of one link to a joint of another
+    (`Mechanism.couplers`); a mass at a joint of the frame does not count.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def two_mass_coupler(mechanism, only=None):
     Raises
     ------
     NotGivenError
-        A mass centre lies beyond a joint, so that the mass at the other would be negative.
+        A mass centre is beyond a joint, so the mass at the other joint would be negative.
 
     Examples
     --------
@@ -150,8 +150,8 @@ def two_mass_coupler(mechanism, only=None):
         outer = coupler.mass * coupler.centre[0] / bar.length
         if np.any(outer < 0) or np.any(outer > coupler.mass):
             raise NotGivenError(
-                f"the mass centre of the {bar.link}, {coupler.centre[0]} m along its {bar.length} m, lies beyond "
-                "its joints, so one of two masses there would be negative"
+                f"the mass centre of the {bar.link}, {coupler.centre[0]} m along its {bar.length} m, is beyond "
+                "its joints, so one of two masses at them would be negative"
             )
         made = made.with_link(bar.link, Link())
         for joint, mass in ((bar.start, coupler.mass - outer), (bar.end, outer)):
@@ -187,7 +187,7 @@ def _at_constant_speed(solution):
 
 
 def _with_links(changed, kind, solution):
-    """The solution with the links of a kind (None: all) by ``changed(link)``, which returns a link that stays."""
+    """The solution with the links of a kind (None: all) by ``changed(link)``, or the same link if nothing changes."""
     mechanism = solution.mechanism
     for name, link in solution.mechanism.links.items():
         if kind in (None, mechanism.own_names[name]) and (new := changed(link)) is not link:
@@ -230,7 +230,7 @@ HARMONICS = Choice("two harmonics", partial(up_to_harmonic, 2)), Choice("one har
 
 
 def ingredients(mechanism):
-    """Simplifications by ingredient, mildest first; they are applied in this order.
+    """Simplifications by ingredient, in order of severity; they are applied in this order.
 
     Links have their names without the labels of groups. Couplers come after other links, to which they add masses;
     kinematics come last.

@@ -1,8 +1,8 @@
 """Stability: the error of every method near places where it may fail, against a certified reference.
 
-A place is a family of scenes with one number that leads toward it: the distance from a dead centre, a mass ratio, the
-size of the mechanism. The error of a method counts as exact while it is below the rounding unit times the condition
-that the library reports, at crank angles counted from the last full turn.
+A place is a family of scenes with a number that approaches it: the distance from a dead centre, a mass ratio, the
+size of the mechanism. A result counts as exact while its error is below the rounding unit times the condition
+of the library, at crank angles counted from the last full turn.
 """
 
 import math
@@ -41,7 +41,7 @@ class Place:
     ----------
     name : str
     axis : str
-        Meaning of the number that leads toward it, with its unit.
+        Meaning of the number that approaches the place, with its unit.
     numbers : tuple of float
     scene : function
         Solution for one number.
@@ -148,7 +148,7 @@ def _toggle(distance):
 
 
 def _just_turning(distance):
-    """Crank and ground in one line are little shorter than coupler and rocker: the crank only just turns."""
+    """Crank and ground in one line are slightly shorter than coupler and rocker: the crank only just turns."""
     crank, coupler, ground = 0.3, 0.45, 0.7
     mechanism = _chain_unit(crank, coupler, (crank + ground - coupler) * (1.0 + distance), (ground, 0.0))
     return _solution(mechanism, _around(math.pi, 2.0 * math.sqrt(distance), 21))
@@ -211,7 +211,7 @@ PLACES = (
     Place("four-bar toggle", _DISTANCE, DISTANCES, _toggle, "O"),
     Place("four-bar change point", _IN_LINE, DISTANCES, _FOLDED["change point"], "O"),
     Place("four-bar that only just turns", "excess of the rocker's length [1]", DISTANCES[2:], _just_turning, "O"),
-    Place("slotted lever that only just turns", "what the slot's offset lacks [1]", DISTANCES[2:], _just_sliding, "O"),
+    Place("slotted lever that only just turns", "deficit of the slot's offset [1]", DISTANCES[2:], _just_sliding, "O"),
     Place("rhombus", _IN_LINE, DISTANCES, _FOLDED["rhombus"], "O"),
     Place("kite", _IN_LINE, DISTANCES, _FOLDED["kite"], "O"),
     Place("kite, A passing O2", _ON_PIVOT, DISTANCES, _FOLDED["kite, A passing O2"], "balancing_torque"),
@@ -227,7 +227,7 @@ PLACES = (
 __all__ = ["PLACES", "Place", "study", "summary"]
 
 EXACT_ERROR = 1e-12
-"""Error below which a result is called exact, whatever the condition."""
+"""Error below which a result is called exact for any condition."""
 METHOD_SETTINGS = {
     "ours, NumPy": None,
     "ours, compiled": None,
@@ -252,17 +252,17 @@ def study(places=None, methods=None, progress=None):
     places : sequence of Place, optional
         `PLACES` by default.
     methods : sequence of Method, optional
-        `ks.precision.METHODS` by default, without those that need even crank angles.
+        `ks.precision.METHODS` by default, without methods that need even crank angles.
     progress : function, optional
         Called with the name of each place before its study.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each place, number and method: largest error over the crank angles, relative to the quantity's
-        largest value; the largest condition; the change by one rounding of the crank angle; the largest bound that
-        `Solution.error_bound` proves for the library's own values, infinite where it proves none; the numbers of angles
-        that lose digits, flip to the other assembly or are NaN; the exception raised; the reason if not given.
+        A row for each place, number and method: largest error over the crank angles, relative to the quantity's largest
+        value; the largest condition; the change by one rounding of the crank angle; the largest bound by
+        `Solution.error_bound` for the library's own values, infinite without proof. Then the numbers of angles that
+        lose digits, flip to the other assembly or are NaN; the exception raised; the reason if not given.
 
     Raises
     ------
@@ -286,7 +286,7 @@ def study(places=None, methods=None, progress=None):
         if progress:
             progress(place.name)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", HintWarning)  # places are odd on purpose
+            warnings.simplefilter("ignore", HintWarning)  # places are extreme on purpose
             for number in place.numbers:
                 rows += _study_number(place, number, chosen)
     return pd.DataFrame(rows)
@@ -296,7 +296,7 @@ def _study_number(place, number, methods):
     with np.errstate(all="ignore"):
         solution = place.scene(number)
         reference = enclosure(solution, place.quantity, digits=20)
-        within_a_turn = solution.at(np.fmod(solution.crank_angle, 2 * math.pi))  # whole turns need not lose digits
+        within_a_turn = solution.at(np.fmod(solution.crank_angle, 2 * math.pi))  # whole turns should not lose digits
         bound = UNIT_ROUNDOFF * within_a_turn.condition_of(place.quantity)
         *inner, last = solution.mechanism.groups
         flipped = replace(solution.mechanism, groups=(*inner, replace(last, assembly=-last.assembly)))
@@ -321,7 +321,7 @@ def _study_number(place, number, methods):
 def _change_by_one_rounding(solution, quantity, reference):
     """Largest change of the quantity by half a unit in the last place of the crank angle, over its largest value.
 
-    Infinite if the next number lies beyond a limit position.
+    Infinite if the next number is beyond a limit position.
     """
     for way in (-math.inf, math.inf):
         try:
@@ -352,14 +352,14 @@ def _behaviour(method, solution, quantity, reference, bound, other):
 
 
 def summary(table):
-    """Behaviour of each method at each place: worst error, its number, and how many angles fail.
+    """Behaviour of each method at each place: worst error, its number, and the number of failing angles.
 
-    The worst error is over the numbers whose condition leaves a digit; the table counts the others.
+    The worst error covers the numbers whose condition leaves a digit; the table counts the others.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        As of `study`.
+        Result of `study`.
 
     Returns
     -------

@@ -98,6 +98,7 @@ def require_columns(name, table, columns):
         problem = f"table must be a pandas DataFrame, got a {type(table).__name__}"
     elif missing:
         problem = f"the table has no column {', '.join(map(repr, missing))}; it has {', '.join(map(str, found))}"
+        problem += checks.hint(missing[0], found)
     elif not len(table):
         problem = "the table has no rows"
     checks.require(name, problem)

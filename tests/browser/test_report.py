@@ -161,7 +161,7 @@ def test_arrows_follow_the_forces_to_one_scale(page):
         choose(driver, degrees)
         for row, (name, joint) in ((0, ("plain", "A")), (0, ("plain", "O")), (1, (OTHER, "A"))):
             script = """const it = report.drawings[arguments[0]];
-                return [it.arrows[arguments[1]].path.getAttribute('d'), it.scale * it.data.scale,
+                return [it.arrows[arguments[1]].path.getAttribute('d'), it.scale * it.machine.scale,
                     it.arrows[arguments[1]].group.getAttribute('visibility')]"""
             path, scale, seen = driver.execute_script(script, row, joint)
             assert seen == "visible"

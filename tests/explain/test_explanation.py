@@ -254,7 +254,7 @@ def test_followers(kind):
 @every("kind", RUBBING)
 def test_friction_is_told_by_the_law_that_it_satisfies(kind):
     told = ask(Drawn(kind, 1).scene.solve(0.3), "balancing_torque", 0.3)
-    assert any("found together with the reactions" in step.words for step in told.steps)
+    assert any("solved together with the reactions" in step.words for step in told.steps)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
@@ -276,7 +276,7 @@ def test_a_magnitude_is_told_by_its_components(quantity):
     assert largest_error(told) < STEP
 
 
-@every(("quantity", "words"), [("|balancing_torque|", "only of a vector"), ("|Q|", "quantity is 'Q', allowed")])
+@every(("quantity", "words"), [("|balancing_torque|", "only vectors have"), ("|Q|", "quantity is 'Q', allowed")])
 def test_magnitudes_of_what_is_no_vector_are_refused(quantity, words):
     with pytest.raises(ks.QuantityError, match=words):
         solved(SCENES["plain, everything"], 1.1).explain(quantity, 1.1)

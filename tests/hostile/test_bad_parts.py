@@ -290,7 +290,7 @@ def test_load_reading_a_force_learns_what_it_may_read(kind, what):
         "Torque": lambda: ks.Torque(FORCES[what], on="rocker"),
         "ProcessForce": lambda: ks.ProcessForce(FORCES[what], "slider2"),
     }[kind]()
-    with pytest.raises(ks.ParameterError, match=r"which it has not: .* it may ask for crank_angle, .*velocity"):
+    with pytest.raises(ks.ParameterError, match=r"which is missing, .* it may use crank_angle, .*velocity"):
         _ = ks.solve(six_bar(), [0.1, 0.2], crank_speed=1.0, loads=item).balancing_torque
 
 

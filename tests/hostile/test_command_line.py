@@ -162,7 +162,7 @@ def test_too_many_angles_name_their_memory(capsys):
 
 
 UNKNOWN = {
-    "case": (["run", "no such"], "no such file, and no shipped case of that name"),
+    "case": (["run", "no such"], "there is no file and no shipped case of this name"),
     "variant": (["run", "{case}", "--variant", "plan"], "did you mean 'plain'?"),
     "variant to compare": (["compare", "{case}", "--variant", "x"], "variant is 'x', allowed: 'plain', 'cam'"),
     "figure": (["plot", "{case}", "--out", "x", "--only", "torqe"], "did you mean 'torque'?"),
@@ -202,7 +202,7 @@ def test_memory_that_runs_out_is_told_in_a_line(saw, monkeypatch, capsys):
         raise MemoryError("Unable to allocate 8 GiB")
 
     monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", solve)
-    assert "there is not enough memory; take fewer" in refused(["run", saw], capsys)
+    assert "there is not enough memory; use fewer" in refused(["run", saw], capsys)
 
 
 # Whatever the output takes, and whatever stops a command, it ends in a line

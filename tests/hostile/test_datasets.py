@@ -140,7 +140,7 @@ def test_a_damaged_part_is_made_anew(folder, expected, name):
 def test_a_part_of_another_sweep_is_made_anew(finished, folder, expected, tmp_path):
     sweep(tmp_path / "other", DESIGNS * 1.1)
     shutil.copy(part(tmp_path / "other"), part(folder))
-    with pytest.warns(CacheWarning, match=r"part-000001.parquet \(another sweep than was written\)"):
+    with pytest.warns(CacheWarning, match=r"part-000001.parquet \(the sweep differs from the written one\)"):
         pd.testing.assert_frame_equal(sweep(folder), expected, check_exact=True)
 
 
@@ -199,7 +199,7 @@ def test_a_manifest_of_other_values_is_another_sweep(folder, value):
 def test_another_library_version_is_another_sweep(folder):
     record = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps(record | {"version": "0.0.1"}))
-    with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in version;"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep, which differs in version;"):
         sweep(folder)
 
 
@@ -255,7 +255,7 @@ PLACES = {
     "a part is a folder": (part_folder, "part-000001.parquet is no file; remove it"),
     "a part is a pipe": (part_pipe, "part-000001.parquet is no file; remove it"),
     "a part is a link to nowhere": (part_link, "part-000001.parquet is no file; remove it"),
-    "files of something else": (foreign, f"holds part-000001.parquet, but no {MANIFEST}"),
+    "files of something else": (foreign, f"contains part-000001.parquet, but no {MANIFEST}"),
     "a file": (a_file, "cannot be used: .*exists"),
     "below a file": (below_a_file, "cannot be used: "),
 }
@@ -318,7 +318,7 @@ def together(monkeypatch, other):
 
 def test_second_of_two_simultaneous_sweeps_is_refused(tmp_path, monkeypatch, expected):
     together(monkeypatch, lambda: sweep(tmp_path))
-    with pytest.raises(ks.ParameterError, match="holds another sweep, which differs in designs"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep, which differs in designs"):
         sweep(tmp_path, DESIGNS * 1.1)
     pd.testing.assert_frame_equal(sweep(tmp_path), expected, check_exact=True)
 
@@ -336,7 +336,7 @@ def test_manifest_is_exclusive_without_hard_links(tmp_path, monkeypatch, expecte
     monkeypatch.setattr(Path, "hardlink_to", refused)
     pd.testing.assert_frame_equal(sweep(tmp_path), expected, check_exact=True)
     together(monkeypatch, lambda: sweep(tmp_path / "new"))
-    with pytest.raises(ks.ParameterError, match="holds another sweep"):
+    with pytest.raises(ks.ParameterError, match="contains another sweep"):
         sweep(tmp_path / "new", DESIGNS * 1.1)
 
 

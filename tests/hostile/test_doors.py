@@ -269,11 +269,14 @@ MIXED = [
     (PAPERS, solved(cam(OwnCam())), "O", "this cam"),
     (PAPERS, solved(SIX_BAR), "O", "no study has formulas for the groups"),
     (PAPERS, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no study has formulas for the groups"),
-    (KANE, solved(ks.Mechanism("own", ks.Crank(0.1), (Wheel(),))), "O", "Wheel does not declare in its pairs"),
+    (KANE, solved(ks.Mechanism("own", ks.Crank(0.1), (Wheel(),))), "O", "Wheel does not declare its pairs"),
     (KANE, solved(MACHINE), "nonsense", "not set up to give nonsense"),
     (KANE, solved(ks.four_bar(0.2, 0.2, 0.2, rocker_pivot=(0.2, 0.0), assembly="open")), "O", "passes change points"),
     (PAPERS, solved(cam(ks.cams.Sampled(TURN, 0.3 + 0.02 * np.cos(TURN)))), "O", "this cam"),
-    *((name, solved(MACHINE, friction=RUBBING), "O", "no friction, but there is some in O") for name in (KANE, PAPERS)),
+    *(
+        (name, solved(MACHINE, friction=RUBBING), "O", "no friction, but the scene has some in O")
+        for name in (KANE, PAPERS)
+    ),
     (NEWTON, solved(MACHINE), "nonsense", "give no nonsense"),
     (NEWTON, solved(MACHINE), "cam_force", "give no cam_force"),
     (PRINTED, solved(MACHINE), "O", "circular cam; crank-slider has none"),
@@ -284,8 +287,8 @@ MIXED = [
     (PRINTED, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "circular cam; fan has none"),
     ("two-mass coupler", solved(ks.crank_slider(0.1, 0.4, slider=ks.Link(5.0))), "O", "no coupler mass"),
     ("two-mass coupler", solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no coupler mass"),
-    *((name, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "fan is a crank alone") for name in BY_TURN),
-    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "evenly over one turn"),
+    *((name, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "fan is only a crank") for name in BY_TURN),
+    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "even crank angles over one turn"),
     ("spectral differentiation", solved(MACHINE, TURN[:4] * 6), "O", "8 samples are more than the 4"),
 ]  # fmt: skip
 

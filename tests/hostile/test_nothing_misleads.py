@@ -314,7 +314,7 @@ SPREADS = {"slider.mass": "500..700 kg", "spring.stiffness": "normal 712 kN/m +-
 @every(
     ("uniform", "words"),
     [
-        ([[2.0, 0.5]], "must be from 0 to 1, .* but 1 of 2 are not, 2 for instance"),
+        ([[2.0, 0.5]], "must be from 0 to 1 .* but 1 of 2 are not, 2 for instance"),
         ([[0.5, -0.1], [0.5, 0.5]], "but 1 of 4 are not, -0.1 for instance"),
         ([[np.nan, 0.5]], "but 1 of 2 are not, nan for instance"),
         (lambda size: np.full((3, size), 600.0), "but 6 of 6 are not, 600 for instance"),
@@ -446,7 +446,7 @@ IMPURE = {
     ),
     "clock": (
         lambda: ks.ProcessForce(lambda q: time.perf_counter()),
-        "it must be pure, a function of the motion alone",
+        "It must be pure, a function of the motion alone",
     ),
 }
 WAYS = {

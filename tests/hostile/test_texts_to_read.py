@@ -187,7 +187,7 @@ NO_PATHS = [
 
 @every("thing", NO_PATHS, ids=range(len(NO_PATHS)))
 def test_what_is_neither_path_nor_name_is_no_case(thing):
-    with pytest.raises(ks.ParameterError, match=r"^load_case: takes a path or the name of a shipped case, got "):
+    with pytest.raises(ks.ParameterError, match=r"^load_case: needs a path or the name of a shipped case, got "):
         ks.load_case(thing)
 
 

@@ -275,7 +275,7 @@ def test_methods_know_the_group_by_its_pairs(solution):
     paired = replace(solution, mechanism=replace(mechanism(), groups=(Paired(**own),)))
     for name in QUANTITIES:
         for method in (*equations.METHODS, *newton.NEWTON_METHODS):
-            with pytest.raises(ks.errors.NotGivenError, match="Yoke does not declare in its pairs"):
+            with pytest.raises(ks.errors.NotGivenError, match="Yoke does not declare its pairs"):
                 method.prepare(solution, name, method.settings[-1])
             found = method.prepare(paired, name, method.settings[-1])()
             expected = components(solution, name)

@@ -207,9 +207,19 @@ def test_csv_gives_back_points_and_cam(tmp_path, units):
     columns = dict(zip(names, read_columns(tmp_path / "cam.csv", names), strict=True))
     made = CUT_CAM.profile(0.05, 500)
     for name, points in (("roller", made.pitch), ("surface", made.surface), ("cutter", made.cutter_path(0.02))):
-        assert_allclose([columns[f"{name}_x"], columns[f"{name}_y"]], points, rtol=0, atol=1e-15)
+        assert_allclose([columns[f"{name}_x"], columns[f"{name}_y"]], points, rtol=0, atol=0.501e-9)  # to 1e-6 mm
     again = ks.cams.Sampled.from_csv(tmp_path / "cam.csv")
     assert_allclose(again.radius(0.123)[2], CUT_CAM.radius(0.123)[2], atol=1e-9)
+    rows = [row.split(", ") for row in (tmp_path / "cam.csv").read_text().splitlines() if row[0].isdecimal()]
+    decimals = {"mm": 6, "cm": 7, "m": 9, "in": 8}[units]
+    assert max(len(cell.partition(".")[2]) for row in rows for cell in row[2:]) <= decimals
+
+
+def test_csv_has_the_numbers_of_the_drawing(tmp_path):
+    """26.5, not 26.499999999999996: of a circle about O all radii and the whole degrees."""
+    ks.cams.Circle(0.0265).export(tmp_path / "cam.csv", roller_radius=0.005, points=360)
+    rows = [row.split(", ") for row in (tmp_path / "cam.csv").read_text().splitlines() if row[0].isdecimal()]
+    assert [row[:2] for row in rows] == [[f"{angle}", "26.5"] for angle in range(360)]
 
 
 def test_a_measured_cam_states_the_error_of_the_forces(tmp_path):

@@ -301,11 +301,11 @@ def test_wrong_numbers_and_names_are_refused(wrong, message):
 PASSING = change_points.four_bar("parallelogram", "open")
 MACHINES = [
     (lambda: "pump", "A", "solution must be a Solution"),
-    (lambda: ks.solve(ks.crank_slider(0.05, 0.16), 0.0, crank_speed=0.0, sense=1), "A", "the crank stands"),
+    (lambda: ks.solve(ks.crank_slider(0.05, 0.16), 0.0, crank_speed=0.0, sense=1), "A", "the crank is at rest"),
     (lambda: pump(np.array([[20.0], [30.0]])), "A", "works on one design at a time"),
     (lambda: ks.solve(ks.crank_slider(0.05, 0.04), 0.0, crank_speed=1.0), "A", "does not close for crank angles 53.1"),
-    (lambda: saw("cam-circle"), "roller", "the turning of roller follows from its radius; give"),
-    (lambda: follower(pressed=False), "roller", "the turning of roller follows from its radius; give"),
+    (lambda: saw("cam-circle"), "roller", "the rotation of roller follows from its radius; give"),
+    (lambda: follower(pressed=False), "roller", "the rotation of roller follows from its radius; give"),
     (lambda: ks.solve(PASSING, 0.3, crank_speed=1.0), "A", "the load at A grows without bound"),
 ]
 

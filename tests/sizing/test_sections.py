@@ -398,7 +398,7 @@ def test_needs_reports_rigidity():
     shaft = {"length": 0.5, "polar_moment": 2e-5, "shear_modulus": 79e9}
     found = ks.needs(solved(), "O", within=0.05, progress=False, bars={"coupler": SAW}, shaft=shaft)
     assert list(found.rigidity) == ["coupler", "shaft"]
-    assert f"rigid coupler is within {found.rigidity['coupler'].departure:.2g}" in str(found)
+    assert f"rigid coupler: error {found.rigidity['coupler'].departure:.2g}" in str(found)
     assert "Timoshenko" in found.rigidity["shaft"].table().loc["departure", "formula"]
     assert ks.needs(solved(), "O", within=0.05, progress=False).rigidity == {}
 
@@ -519,7 +519,7 @@ def test_unknown_names_are_refused():
         (lambda: solved().sections("coupler", SAW, at=10**400), "at must be at most .* memory"),
         (lambda: ks.needs(solved(), "O", progress=False, bars={"coupler": PLAIN}), "lacks its second_moment"),
         (lambda: ks.needs(solved(), "O", progress=False, shaft={"length": 1.0}), "polar_moment must be a number"),
-        (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "needs: bars: the crank stands"),
+        (lambda: strength.bar_rigidity(solved(speed=0.0), "coupler", SAW), "needs: bars: the crank is at rest"),
         (lambda: ks.plots.sections(3), "found must be Sections"),
         (lambda: ks.plots.sections(solved().sections("coupler", SAW), ax=[1]), "ax must be 4 Axes"),
     ],

@@ -55,7 +55,7 @@ def test_opposed_springs_of_the_saw(saw, stress, third, exact):
     assert (f"{found.mass:.0f} kg", f"{found.stiffness / 1e3:.0f} kN/m") == exact
     assert end_stiffness(found.stiffness, found.mass, SPEED) == pytest.approx(600.0 * SPEED**2, rel=1e-11)
     assert found.carried_mass == pytest.approx(600.0)
-    assert any(f"{found.mass:.4g} kg of steel for 600 kg: take gas springs" in note for note in found.notes)
+    assert any(f"{found.mass:.4g} kg of steel for 600 kg: use gas springs" in note for note in found.notes)
 
 
 def test_no_opposed_springs_of_400_mpa_balance_the_saw(saw):
@@ -69,7 +69,7 @@ def test_push_pull_springs_of_the_saw_fail_by_fatigue(saw):
     assert found.stress(found.amplitude, "none") == pytest.approx(600e6)
     assert f"{found.endurance[1] / 1e6:.0f} MPa" == "398 MPa"
     assert found.fatigue_safety < 398.0 / 600.0
-    assert any("take gas springs" in note for note in found.notes)
+    assert any("use gas springs" in note for note in found.notes)
     assert (f"{found.surge_ratio:.1f}", found.surge_ratio > 2.0) == ("5.3", True)
 
 

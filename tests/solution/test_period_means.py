@@ -99,15 +99,24 @@ def test_a_gap_leaves_no_mean(name):
         getattr(s, name)
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
+def test_an_uneven_load_is_warned_of_where_the_mean_is_read():
+    s = braked(lambda q: -10.0 + np.sin(1e5 * np.sin(q.crank_angle) ** 2)).solve(3)
+    with pytest.warns(ks.ConditionWarning, match="right to about .* N m of") as caught:
+        assert s.mean_torque == pytest.approx(10.0, rel=0.05)
+    assert __file__ in [warning.filename for warning in caught]
+
+
 def test_running_has_the_means_of_its_drive():
     """At a speed that varies, the mean power is that over time."""
-    run = ks.drive.steady(press(-33.5), None, flywheel=3000.0)
-    s = run.solution
+    load = ks.Table([0.0, 2.0, 4.0, TURN], [5.0, 5.0, 105.0, 5.0], over="angle")
+    run = ks.drive.steady(braked(load, -5.0), None, flywheel=3.0)
+    s, mean = run.solution, -(5.0 + 0.5 * 100.0 * (TURN - 2.0) / TURN)
     assert run.fluctuation > 0.01
-    assert s.energy_per_turn == pytest.approx(run.energy_per_turn, rel=1e-10)
-    assert s.mean_torque == pytest.approx(run.mean_torque, rel=1e-10)
-    assert s.mean_torque == pytest.approx(-PRESS_WORK / TURN, rel=1e-10)
+    assert (s.mean_torque, run.mean_torque) == pytest.approx((mean, mean), rel=1e-10)
+    assert (s.energy_per_turn, run.energy_per_turn) == pytest.approx((-mean * TURN, -mean * TURN), rel=1e-10)
     assert s.mean_power == pytest.approx(run.mean_power, rel=1e-10)
+    assert s.mean_power == pytest.approx(s.losses.drive, rel=1e-10)
 
 
 def test_comparison_has_mean_torque_and_power_of_machines_that_take_work():

@@ -164,7 +164,7 @@ def test_friction_is_charted_off_its_jumps():
     table = precision.study(solution, methods=methods, repeats=1).set_index("method")
     assert table.loc["ours, NumPy", "error"] < 5e-15
     assert table.loc["Newton iteration, global system", "error"].min() < 1e-14
-    assert table.loc[list(names[1:3]), "not given"].str.contains("know no friction, but there is some in O").all()
+    assert table.loc[list(names[1:3]), "not given"].str.contains("have no friction, but the scene has some in O").all()
 
 
 def test_coarse_motion_for_a_table_is_a_reason():
@@ -214,7 +214,7 @@ def test_case_study_rows_name_machine_and_versions(few, case, tmp_path):
     for library in ("kinetostatics", "numpy", "scipy", "python-flint", "mpmath"):
         assert f"{library} {version(library)}" in versions
     refused = table[table["not given"] != ""]
-    assert "virtual power gives the torque of the drive, no reactions" in set(refused["not given"])
+    assert "virtual power gives only the torque of the drive" in set(refused["not given"])
     assert refused[[TIME, "error"]].isna().all(axis=None)
 
 
@@ -242,7 +242,7 @@ def test_command_prints_front_and_files(few, tmp_path, capsys):
     names = [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     assert printed.splitlines()[-3:] == [str(tmp_path / name) for name in names]
-    front = printed.split("nearer than these")[1]
+    front = printed.split("faster and more accurate")[1]
     assert "ours, NumPy" in front or "ours, torque by powers" in front
     assert "nan" not in front
     assert told.splitlines() == [method.name for method in FEW] * 2

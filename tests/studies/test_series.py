@@ -104,8 +104,8 @@ def test_outer_coupler_mass_is_no_two_masses(place):
     found = ks.needs(solved(cranked(coupler=ks.Link(4.0, (BEYOND[place], 0.06), 0.3))), "O")
     why = found.left_out["two-mass coupler"]
     assert why == (
-        f"the mass centre of the coupler, {BEYOND[place]} m along its 1.3 m, lies beyond its joints, so one of two "
-        "masses there would be negative"
+        f"the mass centre of the coupler, {BEYOND[place]} m along its 1.3 m, is beyond its joints, so one of two "
+        "masses at them would be negative"
     )
     assert f"two-mass coupler left out: {why}" in str(found)
     assert {"massless coupler", "no coupler inertia", "one harmonic"} <= set(alone(found))

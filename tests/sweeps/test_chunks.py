@@ -170,7 +170,7 @@ def test_plain_function_is_called_a_design():
 def test_a_batch_of_another_shape_is_refused():
     made = lambda crank, mass: factories.pump(np.full((3, 1), 0.1), 1.0)  # noqa: E731
     found = sweep(made, DESIGNS[:2], OUTPUTS, angles=36)
-    assert found[FAILED].str.contains("arrays must have the shape (designs, 1)", regex=False).all()
+    assert found[FAILED].str.contains("arrays need the shape (designs, 1)", regex=False).all()
 
 
 @pytest.mark.slow

@@ -207,7 +207,7 @@ def test_all_that_is_wrong_is_told_at_once():
         '"kg" does not measure the same as "m"',
         "column 'cam.centre.x [mm]' must contain numbers",
         "did you mean 'largest O'",
-        "output 'harmonic_180 O' takes more than 360 crank angles, got 360",
+        "output 'harmonic_180 O' needs more than 360 crank angles, got 360",
         "chunk must be a whole number of at least 1, got 0",
         "engine is 'fortran', allowed: 'compiled', 'numpy'",
     ):

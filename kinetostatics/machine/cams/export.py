@@ -19,6 +19,10 @@ MM_PER_M = 1000.0
 """Millimetres in a metre; the drawing is in mm, so that it prints one to one."""
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 """Metres in each unit of a file."""
+DECIMALS = {"mm": 6, "cm": 7, "m": 9, "in": 8, "deg": 6}
+"""Decimals of a table in each unit: a length to a nanometre."""
+MORE_DECIMALS = 6
+"""Further decimals of the angle and the radius, which `Sampled.from_csv` reads: their second differences are forces."""
 DXF_UNITS = {"mm": 4, "cm": 5, "m": 6, "in": 1}
 MAX_POINTS = 100_000
 STYLES = {
@@ -223,15 +227,22 @@ def _to_svg(sheet, path):
 
 def _to_csv(sheet, path):
     """Table of roller centres, working curve and cutter; ``Sampled.from_csv`` reads its first two columns."""
-    unit = sheet.units
-    columns = {"angle [deg]": np.degrees(sheet.profile.crank_angle), f"radius [{unit}]": sheet.in_unit(sheet.radius)}
+    columns = {}
+
+    def add(name, values, unit=sheet.units, more=0):
+        places = DECIMALS[unit] + more
+        rounded = np.round(values, places) + 0.0  # no minus before 0
+        columns[f"{name} [{unit}]"] = [f"{value:.{places}f}".rstrip("0").rstrip(".") for value in rounded]
+
+    add("angle", np.degrees(sheet.profile.crank_angle), "deg", MORE_DECIMALS)
+    add("radius", sheet.in_unit(sheet.radius), more=MORE_DECIMALS)
     for name, points in sheet.paths.items():
         for axis, part in zip("xy", sheet.in_unit(points), strict=True):
-            columns[f"{STYLES[name][1]}_{axis} [{unit}]"] = part
-    columns["pressure_angle [deg]"] = np.degrees(sheet.profile.pressure_angle)
-    columns[f"curvature_radius [{unit}]"] = sheet.in_unit(sheet.profile.curvature_radius)
-    rows = zip(*(part.tolist() for part in columns.values()), strict=True)
-    lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *(", ".join(map(repr, row)) for row in rows)]
+            add(f"{STYLES[name][1]}_{axis}", part)
+    add("pressure_angle", np.degrees(sheet.profile.pressure_angle), "deg")
+    add("curvature_radius", sheet.in_unit(sheet.profile.curvature_radius))
+    rows = zip(*columns.values(), strict=True)
+    lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *map(", ".join, rows)]
     Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -89,7 +89,7 @@ def _single_angles(solution, quantity, setting):
 
 def _by_power(solution, quantity, setting):
     if quantity != "balancing_torque":
-        raise NotGivenError("virtual power gives the torque of the drive, no reactions")
+        raise NotGivenError("virtual power gives only the torque of the drive")
     return lambda: (replace(solution).balancing_torque_by_power,)
 
 
@@ -131,9 +131,9 @@ def _spectral(solution, quantity, samples):
     angle = solution.crank_angle
     turn = np.linspace(0.0, 2 * np.pi, np.size(angle), endpoint=False)
     if np.ndim(angle) != 1 or not np.allclose(angle - angle[0], turn, atol=1e-9):
-        raise NotGivenError("spectral differentiation needs crank angles evenly over one turn, its end excluded")
+        raise NotGivenError("spectral differentiation needs even crank angles over one turn, end excluded")
     if samples > angle.size:
-        raise NotGivenError(f"{samples} samples are more than the {angle.size} crank angles asked for")
+        raise NotGivenError(f"{samples} samples are more than the {angle.size} given crank angles")
     sampled = np.linspace(0.0, 2 * np.pi, samples, endpoint=False)
     paths_over_turn(solution.mechanism, sampled)
     harmonic = 1j * np.arange((samples + 1) // 2)
@@ -149,13 +149,13 @@ def _spectral(solution, quantity, samples):
 
 
 def _report_coarse_motion(run):
-    """The function, with `NotGivenError` where a coarse motion leaves the range of a load's table."""
+    """The function, with `NotGivenError` if a coarse motion leaves the range of a load's table."""
 
     def approximated():
         try:
             return run()
         except ParameterError as why:
-            raise NotGivenError(f"the motion found is too coarse: {why}") from why
+            raise NotGivenError(f"the computed motion is too coarse: {why}") from why
 
     return approximated
 
@@ -165,7 +165,7 @@ def _simpler(model, engine, solution, quantity, setting):
     require_one_design(solution)
     simpler = model(setting, solution)
     if simpler is None:
-        raise NotGivenError("there is no coupler mass to share out between its joints")
+        raise NotGivenError("there is no coupler mass to divide between its joints")
     if engine is COMPILED:
         return _report_coarse_motion(compiled_function(simpler, quantity))
     return _report_coarse_motion(lambda: components(replace(simpler), quantity))

@@ -34,16 +34,16 @@ def with_numeric_side(mechanism):
 
 @dataclass(frozen=True)
 class Method:
-    """One way to the quantities of a solution.
+    """A method to compute quantities of a solution.
 
     Attributes
     ----------
     name : str
-        In charts and tables.
+        Name in charts and tables.
     prepare : function
-        ``prepare(solution, quantity, setting)`` does the work needed once for a mechanism and returns a function
+        ``prepare(solution, quantity, setting)`` does the work needed once per mechanism and returns a function
         without arguments: it computes the quantity at the solution's crank angles, as a tuple of its components (see
-        `quantities.components`). `prepare` raises `NotGivenError` for quantities that the method cannot give.
+        `quantities.components`). `prepare` raises `NotGivenError` for quantities that the method does not give.
     setting : str
         Name of the parameter that trades time for accuracy, with its unit; empty if there is none.
     settings : tuple
@@ -51,11 +51,11 @@ class Method:
     ours : bool
         Whether it is the library's own path.
     bound : function, optional
-        ``bound(solution, quantity)``: the bound that the method proves on its own error, (N,); None if it proves none.
+        ``bound(solution, quantity)``: the proven bound on the method's error, (N,); None without proof.
     precision : "double" or "single"
-        Of the library's own path.
+        Precision of the library's own path.
     device : function, optional
-        ``device()``: the device that computes, as "gpu: NVIDIA H100"; "cpu" without.
+        ``device()``: the computing device, such as "gpu: NVIDIA H100"; by default "cpu".
 
     Examples
     --------
@@ -80,13 +80,13 @@ class Method:
 def require_frictionless(solution):
     """Raise `NotGivenError` for a solution with friction."""
     if solution.friction:
-        raise NotGivenError(f"its equations know no friction, but there is some in {', '.join(solution.friction)}")
+        raise NotGivenError(f"its equations have no friction, but the scene has some in {', '.join(solution.friction)}")
 
 
 def require_moving(solution):
-    """Raise `NotGivenError` for friction with the crank at rest: its direction is not defined."""
+    """Raise `NotGivenError` for friction with the crank at rest, whose direction is undefined."""
     if solution.friction and not np.all(solution.crank_speed):
-        raise NotGivenError("friction of a crank at rest has no sense")
+        raise NotGivenError("friction of a crank at rest has no direction")
 
 
 def require_one_design(solution):
@@ -98,8 +98,8 @@ def require_one_design(solution):
 def run_methods(methods, problem, quantity, measure, progress=None, **unknown):
     """Rows of a table, one for each method and setting, and functions to time by row.
 
-    ``measure(method, run)`` gives further columns, the error among them; where a method does not give the quantity they
-    are as in `unknown`, the error NaN. ``progress(name)`` is called before each method.
+    ``measure(method, run)`` returns further columns, including the error; if a method does not give the quantity, they
+    are those of `unknown`, and the error is NaN. ``progress(name)`` is called before each method.
     """
     rows: list[dict] = []
     runs = {}
@@ -121,7 +121,7 @@ def run_methods(methods, problem, quantity, measure, progress=None, **unknown):
 
 LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python-flint", "mpmath")
 MIN_MEASURED_TIME = 2e-3
-"""Shortest time, s, that the clock measures well; a faster function is called repeatedly within it."""
+"""Shortest measured time, s; a faster function is called repeatedly."""
 LONG_CALL = 1.0
 """A call that takes longer is timed once, s."""
 
@@ -135,9 +135,9 @@ def seconds(*runs, repeats=5):
     Parameters
     ----------
     *runs : function
-        Without arguments.
+        Functions without arguments.
     repeats : int
-        Rounds, of which the median counts; a call that takes more than a second is timed once.
+        Number of rounds; the median counts. A call longer than a second is timed once.
 
     Returns
     -------

@@ -55,10 +55,9 @@ def turned_to_length(vector, angle, length):
 
 def slider_by_double_cross(A, coupler_length, W1, W2, W):
     """Slider: position of the slider pin by double cross product, acos and the sign of a mixed product.
-
-    Steps as printed (Kotov 2024, figure 3): the perpendicular AC from A to the guide W1-W2, the angle CAB by acos, its
-    side by the sign of a mixed product, and a special case for A on the guide. Near a dead centre of an inclined guide
-    the sign and the special case round the same zero differently and may disagree.
+    The steps are those of the print (Kotov 2024, figure 3): the perpendicular AC from A to the guide W1-W2, the angle
+    CAB by acos, its side by the sign of a mixed product, and a special case for A on the guide. Near a dead centre of
+    an inclined guide the sign and the special case round the same zero differently and may disagree.
 
     Parameters
     ----------
@@ -69,7 +68,7 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
     W1, W2 : (x, y)
         Points of the guide, m.
     W : (x, y)
-        W1 or W2: the end of the guide the slider lies toward.
+        W1 or W2: the end of the guide on the side of the slider.
 
     Returns
     -------
@@ -103,8 +102,8 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
     """Coupler and rocker angle of the chain unit by atan and acos, and their rates by the two-component formulas.
 
     As in the Belarusian study of the chain unit, with phi = angle - phi_0 counted from the frame line O-O2, clockwise,
-    and B to the left of A-O2. The coupler angle is right only while A is left of O2, the rocker angle only while
-    b - r cos(phi) > 0: beyond, atan is off by half a turn.
+    and B to the left of A-O2. The coupler angle is correct only while A is left of O2, the rocker angle only while
+    b - r cos(phi) > 0; beyond, atan is wrong by half a turn.
 
     Parameters
     ----------
@@ -149,8 +148,8 @@ def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_
     """Angular accelerations of coupler and rocker of the chain unit by the study's equations (11)-(14), (19)-(22).
 
     Each is a sum of two derivatives: of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2 and
-    (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they are those of
-    its own derivation. The relative forms are the same with the lengths rho, 1, lambda and sqrt(1 - rho^2).
+    (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they follow from
+    its derivation. The relative forms are the same with the lengths rho, 1, lambda and sqrt(1 - rho^2).
 
     Parameters
     ----------
@@ -194,7 +193,7 @@ def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, as
     """Coupler and rocker of any four-bar by the formulas of `chain_unit_by_atan_acos`, and their accelerations.
 
     The x axis is turned into the frame line O-O2, so that f2 and f5 of the study are the same; the rates are
-    differentiated once more, as the study says. The formulas hold while b - r cos(phi) > 0.
+    differentiated once more, as in the study. The formulas hold while b - r cos(phi) > 0.
 
     Parameters
     ----------
@@ -303,7 +302,7 @@ class RollerByAngles(CamRoller):
 
     R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu, and
     R41 = R42 sin(phi - alpha42) + R40 sin(nu) across the ray, at phi + 90 deg. The study prints R41 with a minus, with
-    which the three forces on the block do not sum to zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
+    which the sum of the three forces on the block is not zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
     """
 
     sign: float = EQUILIBRIUM
@@ -394,9 +393,9 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     Parameters
     ----------
     solution : Solution
-        Of a mechanism like one of the cases.
+        Solution of a mechanism like one of the cases.
     sign : float
-        Of R40 sin(nu) in the slot force of a cam roller: `EQUILIBRIUM` or `PRINTED`.
+        Sign of R40 sin(nu) in the slot force of a cam roller: `EQUILIBRIUM` or `PRINTED`.
 
     Returns
     -------
@@ -405,7 +404,7 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
     Raises
     ------
     NotGivenError
-        No study has formulas for it.
+        No study has formulas for the mechanism.
 
     Examples
     --------
@@ -434,14 +433,14 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
 
 
 def exactly_cancelled(solution):
-    """The solution with a force that cancels the slider's inertia exactly, at every position, in place of the springs.
+    """The solution with a force instead of the springs that cancels the slider's inertia at every position.
 
-    So the sawframe study calculates, as if the circular cam gave the cosine law of motion that springs need for it.
+    This is the sawframe study's assumption: a cosine law of motion, which the circular cam does not give.
 
     Parameters
     ----------
     solution : Solution
-        With springs.
+        Solution with springs.
 
     Returns
     -------
@@ -450,7 +449,7 @@ def exactly_cancelled(solution):
     Raises
     ------
     NotGivenError
-        It has no spring.
+        The solution has no spring.
 
     Examples
     --------
@@ -471,14 +470,14 @@ def exactly_cancelled(solution):
 
 
 def as_printed(solution):
-    """The solution by the sawframe study's equations to the letter: exact cancellation, and its sign in the slot force.
+    """The solution by the sawframe study's equations as printed: exact cancellation, and its sign in the slot force.
 
-    Not right mechanics: it gives the study's dynamic coefficients, and fails the balance of powers.
+    This is not correct mechanics: it gives the study's dynamic coefficients but violates the balance of powers.
 
     Parameters
     ----------
     solution : Solution
-        Of the saw with its circular cam and springs.
+        Solution of the saw with its circular cam and springs.
 
     Returns
     -------

@@ -94,7 +94,7 @@ OUR_METHODS = (
 
 
 MIN_TOLERANCE = 3e-14
-"""Smallest relative tolerance that SciPy takes from us."""
+"""Smallest relative tolerance for SciPy."""
 
 
 def _acceleration(problem):
@@ -177,7 +177,7 @@ MOTION_METHODS = (
 
 
 MAX_TURNS = 2000
-"""Periods after which stepping stops."""
+"""Largest number of periods of stepping."""
 MAX_SECANT_STEPS = 30
 
 
@@ -188,14 +188,14 @@ class PeriodicRunning:
         self.machine, self.angles = (scene, motor, flywheel), np.asarray(angles, dtype=float)
         self.driven = DrivenMachine("study", *self.machine, "compiled" if numba_available() else "numpy")
         if self.driven.by_speed:
-            raise NotGivenError("rivals are for loads that do not depend on the speed")
+            raise NotGivenError("other methods need loads that do not depend on the speed")
         self.motor, self.period = motor, self.driven.period
         if self.driven.direction < 0.0:
-            raise NotGivenError("rivals are for motors that turn the crank counter-clockwise")
+            raise NotGivenError("other methods need motors that turn the crank counter-clockwise")
 
     @property
     def guess(self):
-        """Starting value of the energy, J: that at crank angle 0 and the motor's no-load speed."""
+        """Starting value of the energy, J: the value at crank angle 0 and the motor's no-load speed."""
         speed = (self.motor.field_speed or 0.5 * self.motor.top) / abs(self.motor.transmission)
         return 0.5 * float(self.inertia(np.zeros(1))[0]) * speed * speed
 
@@ -225,7 +225,7 @@ class PeriodicRunning:
 
 
 def _energy_by_stepping(after, guess, tolerance):
-    """As `periodic_energy`, by turn after turn until the energy repeats."""
+    """As `periodic_energy`, turn after turn until the energy repeats."""
     energy = guess
     for _ in range(MAX_TURNS):
         before, energy = energy, after(energy)
@@ -235,7 +235,7 @@ def _energy_by_stepping(after, guess, tolerance):
 
 
 def periodic_energy(after, guess, tolerance):
-    """Fixed point of the map from the energy at the start of a period to that at its end, by the secant rule."""
+    """Fixed point of the map from the energy at the start of a period to the energy at its end, by the secant rule."""
     one, two = guess, 0.999 * guess
     first, second = after(one) - one, after(two) - two
     for _ in range(MAX_SECANT_STEPS):
@@ -271,7 +271,7 @@ def _fixed_steps(stages, problem, quantity, steps):
         before = [DOP853.A[row, :row].tolist() for row in range(stages)]
     width, count = problem.period / steps, problem.angles.size
     if steps % count or not np.allclose(problem.angles, problem.period * np.arange(count) / count):
-        raise NotGivenError("fixed steps end at crank angles spread evenly from 0, which divide them")
+        raise NotGivenError("fixed steps need crank angles spread evenly from 0 that divide the steps")
 
     def run():
         angle = width * (np.arange(steps)[:, None] + np.array(places))
@@ -301,7 +301,7 @@ def _fixed_steps(stages, problem, quantity, steps):
 def _scipy_bvp(problem, quantity, tolerance):
     from scipy.integrate import solve_bvp
 
-    scale = problem.guess  # energies of the size of 1, as the solver measures its errors
+    scale = problem.guess  # energies of about 1, because the solver measures errors so
 
     def slopes(angle, energy):
         return problem.slopes(angle, scale * energy[0])[0][None] / scale
@@ -358,7 +358,7 @@ RUNNING_METHODS = (
 
 
 LONG_RUN_TIME = 0.2
-"""Time, s, from which a run is timed only once."""
+"""Time, s, above which a run is timed only once."""
 COMPARED_ANGLES = 24
 """Crank angles at which speeds are compared."""
 
@@ -369,19 +369,19 @@ def study_running(scene, motor, flywheel=0.0, *, methods=None, repeats=3, progre
     Parameters
     ----------
     scene, motor, flywheel
-        As for `drive.steady`; loads must not depend on the speed, and the motor turn the crank counter-clockwise.
+        As for `drive.steady`; loads must not depend on the speed, and the motor must turn the crank counter-clockwise.
     methods : sequence of Method, optional
         `RUNNING_METHODS` by default.
     repeats : int
-        Of each timing; the median counts.
+        Number of timings; the median counts.
     progress : function, optional
         Called with the name of each method before it runs.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each method and setting: time [ms], largest error of the crank speed at 24 crank angles relative to
-        running at 30 digits; NaN for both, with the reason, where a method cannot give the result.
+        A row for each method and setting: time [ms], and largest error of the crank speed at 24 crank angles relative
+        to running at 30 digits. Both are NaN, with the reason, if a method cannot give the result.
 
     Raises
     ------
@@ -414,7 +414,7 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     Parameters
     ----------
     name : str
-        Of `BENCHMARKS`: "slider-crank of SUNDIALS", "N-four-bar of IFToMM, N = 2".
+        Name in `BENCHMARKS`: "slider-crank of SUNDIALS", "N-four-bar of IFToMM, N = 2".
     methods : sequence of Method, optional
         `MOTION_METHODS` by default.
     repeats, progress
@@ -423,7 +423,7 @@ def study_motion(name, *, methods=None, repeats=3, progress=None):
     Returns
     -------
     pandas.DataFrame
-        As of `study_running`, with the error of the crank angle at the end, rad.
+        As for `study_running`, with the error of the crank angle at the end, rad.
 
     Raises
     ------

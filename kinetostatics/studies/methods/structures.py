@@ -1,4 +1,4 @@
-"""What independent methods know of a mechanism and its loads, without the library's kernels.
+"""Data of a mechanism and its loads for independent methods, without the library's kernels.
 
 `structure` lists the joints, straight pairs and cams that groups declare, so users' own groups are covered too.
 `LoadForces` gives loads as forces at points and couples, `FrictionForces` gives the friction of joints; both use
@@ -31,15 +31,15 @@ from ...numbers.lazy import cached_property
 
 LINK_NUMBERS = "mass", "along", "across", "inertia"
 CURVE_NAMES = {Circle: "circle", CosineLaw: "cosine law", Harmonic: "harmonic"}
-"""Cams with closed formulas, and the names of these."""
+"""Cams with closed formulas, and the names of the formulas."""
 SAMPLED_CURVE = "given"
-"""Name of any other curve: its values and derivatives are computed by the curve itself."""
+"""Name of any other curve: the curve itself computes its values and derivatives."""
 
 
 class PartStructure(NamedTuple):
     """Crank or group: links with reference joints, joints with their links, bars (start, end, link), and pairs by name.
 
-    Pairs name the link that they are against, and the joint that their couple is about. `rods` are links that point
+    Pairs name their other link, and the reference joint of their couple. `rods` are links that point
     against their slots. `curve` is the formula of a cam's curve, with the numbers of cosines and sines in it.
     """
 
@@ -56,14 +56,14 @@ class PartStructure(NamedTuple):
 
 
 class Structure(NamedTuple):
-    """A mechanism without its numbers; `zeros` names those that are zero."""
+    """A mechanism without its numbers; `zeros` are the names of the zero numbers."""
 
     parts: tuple[PartStructure, ...]
     zeros: frozenset[str]
 
 
 def structure(mechanism):
-    """Structure of a mechanism, and its numbers by name; `NotGivenError` for a group that declares no pairs."""
+    """Structure of a mechanism, and its numbers by name; `NotGivenError` for a group without declared pairs."""
     owners = {name: point.link for name, point in mechanism.joints.items()}
     parts = tuple(_part_structure(part, owners) for part in mechanism.parts)
     values: dict[str, Any] = {}
@@ -95,9 +95,9 @@ def _part_structure(part, owners):
     held = {link for pair in pins.values() for link in (pair.link, pair.against)}
     free = part.links.keys() - held - {pair.link for pair in slides.values()}
     if missing or free:
-        what = ", ".join(sorted(missing)) or f"what holds {', '.join(sorted(free))}"
-        declared = f"{type(part).__name__} does not declare in its pairs"
-        raise NotGivenError(f"{declared} what equations of motion are made of: {what}")
+        what = ", ".join(sorted(missing)) or f"joints of {', '.join(sorted(free))}"
+        declared = f"{type(part).__name__} does not declare its pairs"
+        raise NotGivenError(f"{declared}, as equations of motion need: {what}")
     return PartStructure(
         type(part).__name__,
         tuple(part.outputs),
@@ -153,13 +153,13 @@ def cross(a, b):
 
 
 def require_massless(spring):
-    """Refuse a spring with mass, whose inertia these methods do not know."""
+    """Refuse a spring with mass, because these methods have no formula for its inertia."""
     if np.any(spring.mass):
         raise NotGivenError(f"there is no independent formula for a spring with mass, got {spring.mass} kg")
 
 
 class LoadForces:
-    """Loads of a `solution` as forces at points and couples on links, in one posture; derived classes give the posture.
+    """Loads of a `solution` as forces at points and couples on links, in one posture, which derived classes give.
 
     They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; and, for
     numbers other than NumPy's, ``number`` of a load's parameter, ``value`` of a load, ``expj``, ``arg`` and ``where``.
@@ -194,7 +194,7 @@ class LoadForces:
         return self.at(pair.against)[1] * self.expj(angle)
 
     def posture(self, link):
-        """As ``at(link)``, of the frame too."""
+        """As ``at(link)``, also for the frame."""
         return (0.0, 1.0, 0.0, 0.0) if link in (None, FRAME) else self.at(link)
 
     def point(self, place):
@@ -205,7 +205,7 @@ class LoadForces:
         return link, joint + offset * axis, shift + 1j * spin * offset * axis
 
     def effects(self):
-        """Effects of all loads but gravity, as those of one load."""
+        """Effects of all loads except gravity, as of a single load."""
         for item in self.solution.loads:
             if hasattr(item, "push") and hasattr(item, "wrenches"):
                 raise NotGivenError(f"there is no independent formula for a {type(item).__name__}")
@@ -279,14 +279,14 @@ MAX_FRICTION_ITERATIONS = 2000
 class FrictionForces:
     """Friction of joints as forces and couples, from the reactions in one posture (`acting`, a `LoadForces`).
 
-    Friction depends on the reactions and changes them: `converge` repeats the solution with the last friction until
-    nothing changes. Each repetition reduces the error by about the coefficient of friction.
+    Friction depends on the reactions and changes them. `converge` repeats the solution with the last friction until it
+    stops changing. Each repetition reduces the error by about the coefficient of friction.
     """
 
     def __init__(self, acting):
         solution = acting.solution
         if solution.friction.senses:
-            raise NotGivenError("friction of a sense that is given, not of the motion, has no independent formula")
+            raise NotGivenError("friction with a given sense, not that of the motion, has no independent formula")
         self._acting, self._friction = acting, solution.friction.acting
         self._number, self._speed = acting.number, acting.number(solution.crank_speed)
 
@@ -302,7 +302,7 @@ class FrictionForces:
             if largest(found - before) <= limit * largest(found):
                 return found
         if self._friction:
-            raise NotGivenError(f"forces and friction still change after being found {MAX_FRICTION_ITERATIONS} times")
+            raise NotGivenError(f"forces and friction still change after {MAX_FRICTION_ITERATIONS} iterations")
         return found
 
     def along(self, forces):
@@ -337,9 +337,10 @@ class FrictionForces:
         return [(pair.link, force, place, 0.0), (pair.against, -force, place, 0.0)]
 
     def _rolling(self, name, pair, friction, forces):
-        """Effects of a roller on its link and the opposite on that of the curve, which turns it by a force along it.
+        """Effects of a roller on its link, and the opposite effects on the link of the curve.
 
-        The couple of its pin and that of the normal force, which acts ahead of the contact, balance this force.
+        A force along the curve turns the roller. It balances the couple of the pin and that of the normal force, which
+        acts ahead of the contact.
         """
         _, place, moving = self._acting.point(pair.joint)
         moving = moving - self._moving(pair.against, place)
@@ -347,7 +348,7 @@ class FrictionForces:
         radius, arm = self._number(friction.roller_radius), self._number(friction.rolling_arm)
         reach = self._number(friction.mu) * self._number(friction.pin_radius)
         pressed = forces[pair.force]
-        side = self._sign(pressed) * self._sign(self._speed)  # of the way along the curve
+        side = self._sign(pressed) * self._sign(self._speed)  # of the motion along the curve
         spin = self._acting.posture(pair.against)[-1] - side * abs(moving) / radius
         # along and across the curve, force and pin load: along * radius = arm * across + reach * load
         least = (radius**2 - reach**2) ** 0.5

@@ -66,7 +66,7 @@ def curves_over(names, curves, label, height=300):
             value = np.append(np.tile(value, len(turns)), value[:1])
         _line(plot, row, names[row], {"angle": angle, "value": value})
     plot.x_range.update(start=0.0, end=period, bounds=(-0.02 * period, 1.02 * period))
-    plot.below[0].ticker = np.linspace(0.0, period, 9).tolist()
+    plot.below[0].ticker = np.linspace(0.0, period, 5).tolist()
     plot.add_layout(Span(location=0.0, dimension="height", line_color="#444444", line_width=1, name="cursor"))
     _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("value", "@value{0.0000 a}")], "vline")
     return plot
@@ -79,6 +79,8 @@ def _period(angle):
 
 def hodograph(solutions, name, height=420):
     """Hodograph of a vector over the turn, for the machines that have it."""
+    from bokeh.models import ColumnDataSource, Scatter
+
     have = _having(solutions, name)
     vectors = {row: of_scene(s)[name].read(s) for row, s in have.items()}
     known = of_scene(next(iter(have.values())))[name]
@@ -94,8 +96,8 @@ def hodograph(solutions, name, height=420):
         x, y = factor * vectors.get(row, np.empty((2, 0)))
         closed = close_curve(np.stack([angle, x, y]))
         _line(plot, row, name, dict(zip(("angle", "x", "y"), closed, strict=True)), "x", "y")
-        style = {"fill_color": COLOURS[row % len(COLOURS)], "line_color": "white", "name": f"tip {row}"}
-        plot.scatter(x[:1], y[:1], size=9, **style)
+        tip = Scatter(x="x", y="y", size=9, fill_color=COLOURS[row % len(COLOURS)], line_color="white")
+        _add(plot, f"tip {row}", ColumnDataSource({"x": x[:1], "y": y[:1]}), tip)
     text = "@x{0.0000 a}, @y{0.0000 a}"
     _hover(plot, [("", "@variant"), ("angle", "@angle{0.0}°"), ("x, y", text)], "mouse")
     return plot
@@ -125,11 +127,18 @@ def _plot(height, x_label, y_label, **options):
 
 
 def _line(plot, row, name, columns, x="angle", y="value"):
-    from bokeh.models import ColumnDataSource
+    from bokeh.models import ColumnDataSource, Line
 
     source = ColumnDataSource({**columns, "variant": [name] * len(columns["angle"])})
     style = {"line_color": COLOURS[row % len(COLOURS)], "line_dash": DASHES[row % len(DASHES)], "line_width": 2}
-    plot.line(x, y, source=source, name=f"line {row}", **style)
+    _add(plot, f"line {row}", source, Line(x=x, y=y, **style))
+
+
+def _add(plot, name, source, glyph):
+    """Add a glyph alone; Bokeh's own functions add a glyph each for selected, muted and other points."""
+    from bokeh.models import GlyphRenderer
+
+    plot.renderers.append(GlyphRenderer(data_source=source, glyph=glyph, name=name))
 
 
 def _hover(plot, tooltips, mode):

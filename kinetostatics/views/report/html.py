@@ -85,7 +85,7 @@ def _contents(subject, progress):
     calculations = tables.calculations(subject, turning["start"])
     progress("figures")
     drawn = _figures(subject, values, runs)
-    box = moving["box"]
+    boxes = [item["box"] for item in moving["drawings"]]
     return {
         "subject": subject,
         "tables": contents,
@@ -101,7 +101,7 @@ def _contents(subject, progress):
         "colours": figures.COLOURS,
         "dashes": figures.SVG_DASHES,
         "together": _same_torque_text(subject),
-        "wide": box[2] - box[0] > WIDE_RATIO * (box[3] - box[1]),
+        "wide": any(right - left > WIDE_RATIO * (high - low) for left, low, right, high in boxes),
         "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": dt.date.today().isoformat(),

@@ -5,19 +5,22 @@ in each pose; if it changes shape, as springs do, all its points.
 """
 
 import base64
+from typing import Any
 
 import numpy as np
 
 from ...machine.group import FRAME
 from ...mechanics.quantities import magnitude
 from .. import strokes
-from ..canvas import close_curve
+from ..canvas import close_curve, grouped
 from ..strokes import UNCLIPPED_SHARE, Shape, Stroke
 
 ARROW_REACH = 0.3
 """Length of the longest arrow, over the largest extent of the joints."""
 MAX_ARROW = 1.2 * ARROW_REACH
 """Length limit of an arrow where a reaction grows without bound."""
+LIKE_SIZE = 0.4
+"""Size of a machine, over that of the largest in the frame, below which it has a frame of its own."""
 RIGID_TOLERANCE = 1e-5
 """Invisible deviation from a rigid body, over the largest extent of the joints."""
 FILLED_KINDS = ("counterweight", "plate", "block", "ground")
@@ -30,25 +33,29 @@ def to_base64(values, kind="<f4"):
 
 
 def movements(machines):
-    """Drawings of machines by name, their common bounding box, m, and the scales of forces and torques."""
+    """Drawings of machines by name, and the largest force and torque; machines of like size have one frame."""
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}
-    size = max(shape.size for shape in shapes.values())
     solutions = [machine.solution for machine in machines.values()]
     force = max((_largest(solution, name) for solution in solutions for name in solution.reactions), default=0.0)
     torque = max(float(np.nanmax(np.abs(solution.balancing_torque), initial=0.0)) for solution in solutions)
-    scale = ARROW_REACH * size / force if force else 0.0
-    boxes: list[np.ndarray] = []
-    drawings = [_drawing(name, shape, scale, boxes) for name, shape in shapes.items()]
-    corners = np.concatenate(boxes, axis=1)
-    low, high = np.nanmin(corners, axis=1), np.nanmax(corners, axis=1)
-    return {
-        "drawings": drawings,
-        "box": [*map(float, low), *map(float, high)],
-        "scale": scale,
-        "longest": MAX_ARROW * size,
-        "force": force,
-        "torque": torque,
-    }
+    frames: dict[str, dict[str, Any]] = {}
+    drawings = {}
+    for names in _of_like_size(shapes):
+        size = max(shapes[name].size for name in names)
+        scale, boxes = ARROW_REACH * size / force if force else 0.0, []
+        for name in names:
+            drawings[name] = _drawing(name, shapes[name], scale, MAX_ARROW * size, boxes)
+        corners = np.concatenate(boxes, axis=1)
+        low, high = np.nanmin(corners, axis=1), np.nanmax(corners, axis=1)
+        frame = {"box": [*map(float, low), *map(float, high)], "scale": scale, "longest": MAX_ARROW * size}
+        frames |= dict.fromkeys(names, frame)
+    return {"drawings": [drawings[name] | frames[name] for name in shapes], "force": force, "torque": torque}
+
+
+def _of_like_size(shapes):
+    """Names of shapes in lists, the largest first; each is larger than `LIKE_SIZE` times the first of its list."""
+    by_size = sorted(shapes, key=lambda name: -shapes[name].size)
+    return grouped(by_size, lambda first, other: shapes[other].size > LIKE_SIZE * shapes[first].size)
 
 
 def _largest(solution, joint):
@@ -60,7 +67,7 @@ def _largest(solution, joint):
     return float(np.quantile(size, UNCLIPPED_SHARE) if solution.mechanism.grows(joint) else size.max())
 
 
-def _drawing(name, shape, scale, boxes):
+def _drawing(name, shape, scale, longest, boxes):
     solution = shape.turn
     made = solution.mechanism
     strokes = [*_fixed_strokes(shape), *shape.counterweights(solution), *shape.strokes(solution)]
@@ -73,7 +80,7 @@ def _drawing(name, shape, scale, boxes):
         vector = scale * solution.reaction(joint)
         length = magnitude(vector)
         with np.errstate(invalid="ignore", divide="ignore"):
-            shown = np.minimum(1.0, MAX_ARROW * shape.size / np.where(length > 0, length, 1.0))
+            shown = np.minimum(1.0, longest / np.where(length > 0, length, 1.0))
         boxes.append(places[at] + vector * shown)
     return {
         "name": name,

@@ -254,7 +254,7 @@ def test_other_refusals():
     with pytest.raises(QuantityError, match="'nonsense'"):
         certified(s, "nonsense")
     batch = ks.solve(ks.crank_slider(np.array([[0.1], [0.2]]), 1.0), FEW, crank_speed=5.0)
-    with pytest.raises(NotGivenError, match="one design at a time"):
+    with pytest.raises(NotGivenError, match="needs a single design"):
         certified(batch, "A")
 
 

@@ -61,7 +61,7 @@ def test_spectral_turn_may_begin_at_any_angle():
     found = method.prepare(solution, "balancing_torque", 32)()
     assert np.abs(found - solution.balancing_torque).max() < 1e-10 * np.abs(solution.balancing_torque).max()
     uneven = solution.at(turn**1.01)
-    with pytest.raises(ks.NotGivenError, match="evenly over one turn, its end excluded"):
+    with pytest.raises(ks.NotGivenError, match="even crank angles over one turn, end excluded"):
         method.prepare(uneven, "balancing_torque", 32)
 
 
@@ -80,4 +80,4 @@ def test_two_masses_need_the_mass_between_joints():
     table = precision.study(solution, methods=methods, repeats=1)
     assert len(table) == 2
     assert table["error"].isna().all()
-    assert table["not given"].str.contains("lies beyond its joints, so one of two masses there would be negative").all()
+    assert table["not given"].str.contains("is beyond its joints, so one of two masses at them would be negative").all()

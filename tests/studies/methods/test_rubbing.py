@@ -67,20 +67,20 @@ def test_what_cannot_be_found_is_refused():
     rests = Drawn("slider", 1).scene
     rests = replace(rests, crank_speed=0.0, crank_acceleration=5.0).solve(ANGLES)
     for prepare in (NEWTON.prepare, lambda s, quantity, _: independent.independent(s, quantity, [0])):
-        with pytest.raises(NotGivenError, match="friction of a crank at rest has no sense"):
+        with pytest.raises(NotGivenError, match="friction of a crank at rest has no direction"):
             prepare(rests, "O", 6)
-    with pytest.raises(NotGivenError, match="its equations know no friction, but there is some in O, A, B, guide"):
+    with pytest.raises(NotGivenError, match="its equations have no friction, but the scene has some in O, A, B, guide"):
         equations.METHODS[0].prepare(drawn("slider"), "O", None)
 
 
 def test_friction_that_does_not_settle_is_told(monkeypatch):
     monkeypatch.setattr("kinetostatics.studies.methods.structures.MAX_FRICTION_ITERATIONS", 2)
-    with pytest.raises(NotGivenError, match="forces and friction still change after being found 2 times"):
+    with pytest.raises(NotGivenError, match="forces and friction still change after 2 iterations"):
         NEWTON.prepare(drawn("slider"), "O", 6)()
 
 
 def test_friction_in_a_given_sense_is_refused():
     s = drawn("slider")
     held = replace(s, friction=replace(s.friction, rubs=tuple(replace(rub, sense=1.0) for rub in s.friction.rubs)))
-    with pytest.raises(NotGivenError, match="friction of a sense that is given"):
+    with pytest.raises(NotGivenError, match="friction with a given sense"):
         NEWTON.prepare(held, "O", 6)()

@@ -45,7 +45,10 @@ def test_axis_of_a_turn_ends_at_360_degrees():
     angle = np.append(np.arange(0.0, 360.0, 1.0), 359.4)
     plot = figures.curves_over(["saw"], {0: (angle, np.cos(np.radians(angle)))}, "torque [N m]")
     assert plot.x_range.end == 360.0
-    assert plot.below[0].ticker.ticks[1] == 45.0
+    assert plot.below[0].ticker.ticks == [0.0, 90.0, 180.0, 270.0, 360.0]
+    angle = np.append(angle, 360.0 + angle)
+    plot = figures.curves_over(["saw"], {0: (angle, np.cos(np.radians(angle)))}, "torque [N m]")
+    assert plot.below[0].ticker.ticks == [0.0, 180.0, 360.0, 540.0, 720.0]
 
 
 @pytest.mark.slow
@@ -171,21 +174,38 @@ def test_moving_parts_are_stored_as_poses():
 
 def test_arrows_have_one_scale_for_all_machines():
     found = drawn("sawframe_2r63")
+    frames = [{key: drawing[key] for key in ("box", "scale", "longest")} for drawing in found["drawings"]]
+    frame = frames[0]
+    assert frames == [frame] * len(frames)
     shapes = [Shape(machine.solution) for machine in subject("sawframe_2r63").machines.values()]
     size = max(shape.size for shape in shapes)
-    assert np.isclose(found["scale"] * found["force"], ARROW_REACH * size)
-    assert np.isclose(found["longest"], MAX_ARROW * size)
+    assert np.isclose(frame["scale"] * found["force"], ARROW_REACH * size)
+    assert np.isclose(frame["longest"], MAX_ARROW * size)
     solution = subject("sawframe_2r63").machines["plain"].solution
     assert np.isclose(found["force"], max(np.hypot(*solution.reaction(name)).max() for name in solution.reactions))
 
 
+def test_small_machine_beside_large_ones_has_its_own_frame():
+    widths = {}
+    for drawing in drawn("mower_drives")["drawings"]:
+        left, _, right, _ = drawing["box"]
+        widths[drawing["name"]] = right - left
+        x = [
+            solution.position(joint)[0]
+            for solution in [subject("mower_drives").machines[drawing["name"]].solution]
+            for joint in solution.mechanism.joints
+        ]
+        assert np.ptp(x) > 0.3 * (right - left), drawing["name"]
+    assert widths["crank-slider"] == widths["crank-rocker"] > 2.0 * widths["planetary"]
+
+
 def test_box_holds_joints_and_arrow_tips():
     found = drawn("shaper")
-    left, low, right, high = found["box"]
+    left, low, right, high = found["drawings"][0]["box"]
     for machine in subject("shaper").machines.values():
         solution = machine.solution
         for joint, drawing in zip(["A"], found["drawings"][:1], strict=True):
-            tip = solution.position(drawing["arrows"][joint]) + found["scale"] * solution.reaction(joint)
+            tip = solution.position(drawing["arrows"][joint]) + drawing["scale"] * solution.reaction(joint)
             assert (tip[0] >= left - 1e-9).all()
             assert (tip[0] <= right + 1e-9).all()
         for joint in solution.mechanism.joints:
@@ -211,4 +231,4 @@ def test_unbounded_reaction_hides_no_other():
         warnings.simplefilter("ignore", ks.ConditionWarning)
         found = movements(subject_of(ks.Scene(parallelogram, 10.0, loads=ks.Gravity())).machines)
     assert np.isfinite(found["force"])
-    assert np.isfinite(found["box"]).all()
+    assert np.isfinite(found["drawings"][0]["box"]).all()

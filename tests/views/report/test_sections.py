@@ -81,7 +81,12 @@ def test_swing_stands_with_its_published_figures():
 
 
 def test_one_machine_is_compared_with_nothing():
-    assert tables.comparisons(subject_of(plain())) == []
+    alone = subject_of(plain())
+    assert tables.comparisons(alone) == []
+    assert "atio" not in tables.glance(alone).note
+    pytest.importorskip("bokeh")
+    text = html.page(alone).split("application/json")[0]
+    assert not re.search(r"machine's name|[Rr]atio of means|data-machine=", text)
 
 
 def test_report_extremes_are_the_librarys():

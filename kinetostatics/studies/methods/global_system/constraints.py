@@ -29,8 +29,8 @@ MAX_FOOT_ITERATIONS = 30
 class CurvedTerms(NamedTuple):
     """A nonlinear equation at given coordinates: its value, derivatives by coordinates, and second derivative.
 
-    `parts` are tuples of a link's number, the derivatives by its x and y as the complex x + iy, and that by its angle.
-    `second` is the second derivative without accelerations, where velocities are given.
+    `parts` are tuples of a link's number, derivatives by its x and y as a complex number, and derivative by its angle.
+    `second` is the second derivative without accelerations, if velocities are given.
     """
 
     value: Any
@@ -113,7 +113,7 @@ class Model:
     """Constraint equations and masses of a mechanism with k links, in coordinates q (..., 3k): all x, all y, all theta.
 
     The equations are linear in the terms (q, cos theta, sin theta, 1, phi), except `curved`, of slots and cams.
-    `equations` (3k, 5k + 2) are the coefficients of these terms. `readings` give for a quantity its source, POSITION q,
+    `equations` (3k, 5k + 2) are the coefficients of these terms. `readings` map a quantity to its source, POSITION q,
     RATE qdot, ACCELERATION qddot or FORCE lambda, and the coefficients (components, 3k) of the source.
     """
 
@@ -382,7 +382,7 @@ class _LoadForces(LoadForces):
 
 
 def components(model, solution, quantity, q, rates=None):
-    """Components of a quantity at positions q (N, 3k), with given velocities or those that the positions imply."""
+    """Components of a quantity at positions q (N, 3k), with given velocities, or those implied by the positions."""
     order, coefficients = model.readings[quantity]
     at = Configuration(model, q, solution.crank_angle)
     found = q
@@ -397,7 +397,7 @@ def components(model, solution, quantity, q, rates=None):
 
 
 def integrate(slopes, span, start, method, asked, rtol, atol):
-    """States at the times asked for of an integration by SciPy, (components, N)."""
+    """States (components, N) at given times, by SciPy's integrators."""
     from scipy.integrate import solve_ivp
 
     found = solve_ivp(slopes, span, start, method, asked, rtol=rtol, atol=atol)

@@ -29,7 +29,7 @@ CLOSURE_TOLERANCE = 1e-9
 
 
 def model_of(solution, quantity):
-    """Model of a solution's mechanism; an error if it does not give the quantity."""
+    """Model of a solution's mechanism; an error if the quantity is missing."""
     require_one_design(solution)
     require_moving(solution)
     model = Model(solution.mechanism)
@@ -75,7 +75,7 @@ NEWTON_METHODS = (Method("Newton iteration, global system", _prepare, "iteration
 
 
 DAMPING = 1.0
-"""Baumgarte's a = alpha = beta, per rad of crank angle. Over one turn 0.5 to 2 do as well; 10 takes 4 to 10 times the
+"""Baumgarte's a = alpha = beta, per rad of crank angle. Over one turn 0.5 to 2 are as good; 10 needs 4 to 10 times the
 work.
 """
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)

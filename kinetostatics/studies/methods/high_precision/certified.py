@@ -1,6 +1,6 @@
 """Certified references: quantities confirmed by two independent paths, and periodic running to many digits.
 
-The two paths share no formula: the library's kernels on intervals (`enclosures`), and mpmath with formulas of its own
+The two paths share no formula: the library's kernels on intervals (`enclosures`), and mpmath with independent formulas
 (`independent`). `exact_speed` solves periodic running by collocation at Chebyshev points between the kinks of the
 loads, with arb numbers of `WORKING_BITS` bits; Newton's iteration is on the energy U, dU/dphi = motor torque - load
 torque. The number of points rises until the speed changes by less than `SPEED_TOLERANCE`.
@@ -26,7 +26,7 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     Parameters
     ----------
     solution : Solution
-        Of one design.
+        Solution of one design.
     quantity : str
         As for `quantities.components`.
     digits : int
@@ -43,7 +43,7 @@ def certified(solution, quantity, digits=30, checks=8) -> Enclosure:
     KinetostaticsError
         The paths disagree.
     NotGivenError
-        A load or cam is computed in double precision only, or a crank angle lies at a limit position.
+        A load or cam is computed in double precision only, or a crank angle is at a limit position.
     MissingLibraryError
         python-flint or mpmath is not installed.
 
@@ -84,7 +84,7 @@ def relative_errors(found, reference: Enclosure):
     Parameters
     ----------
     found : tuple of arrays (N,)
-        Components as of `quantities.components`, or exact ones of another `Enclosure`; NaN and infinity stay.
+        Components as of `quantities.components`, or exact ones of another `Enclosure`; NaN and infinity are unchanged.
     reference : Enclosure
 
     Returns

@@ -2,7 +2,7 @@
 
 (Johansson 2017, *Arb: efficient arbitrary-precision midpoint-radius interval arithmetic*.) The mechanism has the
 doubles of the solution as exact numbers. A guide through two points is exact in its direction only: its unit vector
-has length 1 but for rounding.
+has length 1 to rounding.
 """
 
 import importlib
@@ -71,7 +71,7 @@ class Enclosure:
 def require_one_design(solution):
     if np.ndim(solution.crank_angle) > 1 or solution.shape != np.shape(solution.crank_angle):
         raise NotGivenError(
-            f"{solution.mechanism.name}: a certificate is of one design at a time, this solution has shape "
+            f"{solution.mechanism.name}: a certificate needs a single design, but this solution has shape "
             f"{solution.shape}"
         )
 
@@ -82,7 +82,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     Parameters
     ----------
     solution : Solution
-        Of one design.
+        Solution of one design.
     quantity : str
         As for `quantities.components`.
     digits : int
@@ -95,7 +95,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
     Raises
     ------
     NotGivenError
-        A load or cam is computed in double precision only, or a crank angle lies at or beyond a limit position.
+        A load or cam is computed in double precision only, or a crank angle is at or beyond a limit position.
     MissingLibraryError
         python-flint is not installed.
 
@@ -135,7 +135,7 @@ def enclosure(solution, quantity, digits=30) -> Enclosure:
 
 
 def _certainly_closes(run, solution):
-    """Whether all groups certainly close at each angle, (N,); an error where one certainly does not."""
+    """Whether all groups certainly close at each angle, (N,); an error if one certainly does not."""
     closing = np.ones(run.crank_angle.shape, dtype=bool)
     for group in run.mechanism.groups:
         margin = group.closure(run.placement)
@@ -143,7 +143,7 @@ def _certainly_closes(run, solution):
         if failing.size:
             raise NotGivenError(
                 f"{place_text(solution, failing[0])}: {type(group).__name__} is at a limit position or does not close "
-                f"(its closure margin is {margin[failing[0]].str(5)}), so there is nothing to certify"
+                f"(its closure margin is {margin[failing[0]].str(5)}), so no certificate exists"
             )
         closing &= margin > 0
     return closing
@@ -212,9 +212,9 @@ def _evaluate_on_arb(what, compute):
 
 
 def _require_exact(what, values, arb):
-    """Raise if values are neither enclosures nor one constant: then the angles were rounded to doubles."""
+    """Raise if values are neither enclosures nor a constant: then the angles were rounded to doubles."""
     if np.ndim(values) and not all(isinstance(value, arb) for value in np.ravel(values)):
-        raise NotGivenError(f"no certificate: {what} is computed in double precision, whatever numbers it is given")
+        raise NotGivenError(f"no certificate: {what} is computed in double precision for numbers of any kind")
 
 
 def magnitude(parts):

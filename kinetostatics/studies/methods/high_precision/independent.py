@@ -1,4 +1,4 @@
-"""Independent check of the certified reference: mpmath numbers, own formulas, all forces from one linear system.
+"""Check of the certified reference: mpmath numbers, independent formulas, all forces from one linear system.
 
 It reads only joints and bodies of the mechanism. Positions follow from angles, velocities and accelerations from
 difference quotients of positions, all forces from the Newton-Euler equations. A plane vector is a complex number.
@@ -202,12 +202,13 @@ def left(a):
 def independent(solution, quantity, indices: Iterable[int], digits=30):
     """Components of a quantity at some of a solution's crank angles, a tuple of arrays (n,) of `mpmath.mpf`.
 
-    `digits` are those of the result; the working precision is far higher, as derivatives are difference quotients.
+    `digits` are those of the result; the working precision is much higher, because derivatives are difference
+    quotients.
 
     Raises
     ------
     NotGivenError
-        A group or cam has no independent formulas, the mechanism has no such quantity, or the iteration of friction
+        A group or cam has no independent formulas, the quantity is unknown, or the iteration of friction
         does not converge.
     """
     mp = require_library("mpmath").mp

@@ -1,9 +1,9 @@
-"""SymPy's Kane method, lambdified: the fastest alternative that an expert would choose.
+"""SymPy's Kane method, lambdified: the fastest alternative for an expert.
 
 The crank angle is the only coordinate; directions of links and travels of sliders are closed forms of it (`motion`).
 Each link has auxiliary speeds, so the equations contain the reactions (Kane and Levinson, *Dynamics: Theory and
 Applications*, 1985: bringing noncontributing forces into evidence). `KanesMethod` derives the equations once for each
-structure. `lambdify` compiles the quantities asked for, with common subexpressions, once for each pattern of parameters
+structure. `lambdify` compiles the requested quantities, with common subexpressions, once for each pattern of parameters
 that are 0, 1 or -1. `AppliedLoads` computes tables, functions and loads at points as numbers before each call.
 """
 

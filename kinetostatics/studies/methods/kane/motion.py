@@ -1,4 +1,4 @@
-"""Motion of a mechanism in symbols, from what its groups declare: closed forms of loops and cams, and derivatives.
+"""Motion of a mechanism in symbols, from the declarations of its groups: closed forms of loops and cams.
 
 The crank angle is the only coordinate. A loop has a closed form if it contains one angle, one travel, one of each, or
 two angles; rates and accelerations are derivatives by the crank angle.
@@ -105,10 +105,10 @@ class Body:
 class Motion:
     """Motion of one structure of mechanism.
 
-    `steps` are intermediate values by symbol, which may use one another in any order; `motions` results by name, in
-    components; `symbols` stand in both for the crank angle, functions of it and their derivatives. `sides` are signs of
-    roots, set by the assembly, with the link whose angle theta each chooses: the sign of a sin(theta) - b cos(theta),
-    where a, b are the results of that name.
+    `steps` are intermediate values by symbol, which may use one another in any order; `motions` are results by name, in
+    components. In both, `symbols` replace the crank angle, its functions and their derivatives. `sides` are signs of
+    roots, set by the assembly. Each chooses the angle theta of a link: the sign of a sin(theta) - b cos(theta), with
+    a, b from the results of that name.
     """
 
     def __init__(self, structure):
@@ -140,7 +140,7 @@ class Motion:
         """Symbol of a length or angle, or 0 if it is zero."""
         return sp.S.Zero if name in self.structure.zeros else sp.Symbol(name)
 
-    # Where everything is
+    # Positions
 
     def _point(self, link):
         """Body of a link, with the direction of the crank, of its slot or guide, or an unknown angle."""
@@ -192,7 +192,7 @@ class Motion:
             else:
                 reference = next(name for part in self.structure.parts for of, name in part.links if of == link)
                 if reference == joint:
-                    raise NotGivenError(f"nothing that is declared says where joint {joint} of the {link} is")
+                    raise NotGivenError(f"no declaration gives the position of joint {joint} of the {link}")
                 body.joint = self._place(reference)
                 return self._place(joint)
         return self.places[joint]
@@ -236,7 +236,7 @@ class Motion:
         elif shape == (0, 1, 0, 1):
             self._travel(*travels, *lines)
         else:
-            raise NotGivenError(f"the loops of {part.kind} have no closed form that is known")
+            raise NotGivenError(f"the loops of {part.kind} have no known closed form")
 
     def _lead(self, link):
         """Define the travel or angle of a link on a cam."""

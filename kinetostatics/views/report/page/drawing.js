@@ -1,7 +1,7 @@
 "use strict";
 // A machine drawn at one crank angle: what was packed by `movement.py`, in pixels of its panel.
 const SVG = "http://www.w3.org/2000/svg";
-const PAD = 26, TALLEST = 560, HEAD = 9, TURN_RADIUS = 26, WIDEST_TURN = 290;
+const PAD = 26, TALLEST = 560, TALLEST_BESIDE_WIDE = 300, HEAD = 9, TURN_RADIUS = 26, WIDEST_TURN = 290;
 
 function unpacked(text, Kind) {
   const bytes = Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
@@ -37,9 +37,10 @@ class Drawing {
 
   // Scale and frame follow the width of the panel, so that letters and lines keep their size.
   build() {
-    const [left, low, right, high] = this.data.box;
+    const [left, low, right, high] = this.machine.box;
+    const tallest = this.svg.closest(".wide") ? TALLEST_BESIDE_WIDE : TALLEST;
     const width = Math.max(240, Math.round(this.svg.clientWidth || 480));
-    const scale = Math.min((width - 2 * PAD) / (right - left || 1), (TALLEST - 2 * PAD) / (high - low || 1));
+    const scale = Math.min((width - 2 * PAD) / (right - left || 1), (tallest - 2 * PAD) / (high - low || 1));
     const height = Math.max(150, Math.round(scale * (high - low) + 2 * PAD + 14));
     this.scale = scale;
     this.originX = width / 2 - (scale * (left + right)) / 2;
@@ -98,7 +99,7 @@ class Drawing {
 
   // A force of a round size as long as its arrow.
   rule(width, height) {
-    const { force, forceUnit } = this.data, scale = this.longer * this.data.scale;
+    const { force, forceUnit } = this.data, scale = this.longer * this.machine.scale;
     if (!force) return;
     const most = 0.28 * width / (scale * this.scale) * forceUnit.factor;
     const power = 10 ** Math.floor(Math.log10(most));
@@ -150,9 +151,9 @@ class Drawing {
   point(name, [x, y], row) {
     const { group, path, text } = this.arrows[name];
     const [forceX, forceY] = this.forces(name, this.row, row);
-    let [alongX, alongY] = [forceX, -forceY].map((part) => this.longer * this.data.scale * this.scale * part);
+    let [alongX, alongY] = [forceX, -forceY].map((part) => this.longer * this.machine.scale * this.scale * part);
     let length = Math.hypot(alongX, alongY);
-    const longest = this.data.longest * this.scale;
+    const longest = this.machine.longest * this.scale;
     if (length > longest) { [alongX, alongY] = [alongX / length * longest, alongY / length * longest]; length = longest; }
     const seen = length > 2.5 && Number.isFinite(length) && !this.hidden.has(name);
     group.setAttribute("visibility", seen ? "visible" : "hidden");
