@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
-from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox, IdentityTransform
 
 DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
@@ -22,8 +21,8 @@ A greater distance costs up to 1.
 """
 CLEARANCE = 3.0
 """Distance that a label keeps from the frame of the axes and from points of others, in typographic points."""
-HALO = [withStroke(linewidth=1.6, foreground="white")]
-"""White edge of the letters, so that they can be read on a line."""
+GROUND = {"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.65}
+"""Ground of a label, so that it can be read on a line."""
 PLACEMENT_ROUNDS = 3
 """Rounds of placement: in the first, labels avoid earlier ones, then all others."""
 
@@ -161,7 +160,7 @@ def label(ax, text, point, **style):
     keeper = next((item for item in ax.artists if isinstance(item, Labels)), None)
     if keeper is None:
         keeper = ax.add_artist(Labels())
-    options = {"textcoords": "offset points", "fontsize": "x-small", "ha": "left", "va": "bottom", "path_effects": HALO}
+    options = {"textcoords": "offset points", "fontsize": "x-small", "ha": "left", "va": "bottom", "bbox": GROUND}
     made = ax.annotate(text, np.asarray(point, dtype=float), xytext=(6, 6), **options | style)
     keeper.texts.append(made)
     return made
