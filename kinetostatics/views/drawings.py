@@ -42,7 +42,7 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
 GRAVITY_PLACE, GRAVITY_LENGTH = (0.93, 0.12), 30.0
 """Tip of the arrow of gravity, shares of the axes, and its length, typographic points."""
 DOWNWARDS = np.cos(np.radians(1.0))
-"""Cosine of the angle from -y up to which gravity needs no arrow."""
+"""Cosine of the largest angle from -y without an arrow of gravity."""
 COUNTERWEIGHT_KINDS = ("counterweight", "bar")
 """Kinds of strokes in counterweights."""
 LINES: dict[str, dict[str, Any]] = {
@@ -71,13 +71,13 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
 
     Loads, counterweights, joint names and mass centres are drawn in the first pose. An arrow "g" in the corner shows
-    the direction of weight that does not act along -y. Arrows of loads point as the force or torque
-    acts there; where it is zero or unknown, as at its largest magnitude; for functions, as a positive one.
+    the direction of weight unless it acts along -y. Arrows of loads show the force or torque
+    there, or at its largest magnitude if it is zero or unknown; for functions a positive value.
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
-        Several must be machines that move alike: the first is drawn, with the counterweights and loads of each.
+        Several machines must have the same motion: the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
     ax : Axes, optional
@@ -147,7 +147,7 @@ def _draw_gravity(ax, gravity):
 
 
 def _draw_own(ax, strokes):
-    """Draw strokes that only some machines have, in colours by machine, with a legend."""
+    """Draw strokes of only some machines, in colours by machine, with a legend."""
     colours: dict[str, Any] = {}
     for stroke, owners in strokes:
         text = f"{'counterweight' if stroke.kind in COUNTERWEIGHT_KINDS else 'load'}: {', '.join(owners)}"

@@ -1,4 +1,4 @@
-"""Labels that avoid each other and everything drawn; they are placed again whenever a figure is drawn."""
+"""Labels that avoid each other and all drawn objects; every drawing of a figure places them again."""
 
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
 DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0, 54.0, 76.0)
 """Distances between a point and the nearest side of its label, in typographic points."""
 LEADER_DISTANCE = 14.0
-"""Distance from which on a leader line connects label and point."""
+"""Distance above which a leader line connects label and point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
 """Costs of a label on another label, a point, a curve, and outside the axes; each place farther away costs 1/40."""
 PLACEMENT_ROUNDS = 3
@@ -124,7 +124,7 @@ class _Places(NamedTuple):
         return cls(offsets, boxes, [Bbox.from_extents(box) for box in boxes], leaders, reaches)
 
     def crossed(self, path, extents, filled):
-        """Whether a path meets the box of each place, (P,); only boxes within its extents are looked at closely."""
+        """Whether a path meets the box of each place, (P,); only boxes within its extents are tested exactly."""
         count = _overlap(self.boxes, extents[None])[:, 0].astype(int)
         for place in np.flatnonzero(count):
             count[place] = path.intersects_bbox(self.bounds[place], filled=filled)

@@ -70,9 +70,9 @@ def hatched_line(start, end, width):
 
 
 THIN_RATIO = 1e-3
-"""Width of a link, relative to its length, up to which it is a straight bar."""
+"""Largest width of a straight bar, relative to its length."""
 UNCLIPPED_SHARE = 0.9
-"""Share of the poses in which an unbounded reaction has its arrow in full length."""
+"""Fraction of the poses with a full-length arrow of an unbounded reaction."""
 HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
@@ -322,7 +322,7 @@ def at_angles(solution, degrees):
 
 
 def moves_alike(solution, other):
-    """Whether two machines look the same in every pose, apart from counterweights and loads."""
+    """Whether two machines look the same in every pose, except for counterweights and loads."""
     made, twin = solution.mechanism, other.mechanism
     if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
         return False
@@ -341,7 +341,7 @@ def load_strokes(solution, angle):
 
 
 def strokes_by_owner(named, angle):
-    """Counterweights and signs of loads in a pose, each with the labels of the machines that have it."""
+    """Counterweights and signs of loads in a pose, each with the labels of its machines."""
     found = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
