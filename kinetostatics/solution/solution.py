@@ -569,7 +569,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     def _at_joint(self, joint, ending):
         """A quantity of friction at a joint; 0 without friction there."""
-        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        self._look_up("joint with friction", joint, self.mechanism.pairs)
         return self._found(joint + ending) if joint in self.friction else self._scalar(None)
 
     def _found(self, name):

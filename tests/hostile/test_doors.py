@@ -70,7 +70,7 @@ WANTED = {
     "shares": (lambda thing: ks.plots.shares(thing, "O"), SOLUTIONS),
     "chain_unit_motion": (lambda thing: ks.plots.chain_unit_motion(thing, "rocker"), SOLUTIONS),
     "characteristics": (lambda thing: ks.linkage.characteristics({"a": thing}, "a"), f"a {SOLUTIONS}"),
-    "model_ladder": (ks.plots.model_ladder, "needs must be a Needs, as from ks.needs(...) returns"),
+    "model_ladder": (ks.plots.model_ladder, "needs must be a Needs, as from ks.needs(...), got"),
 }
 
 

@@ -198,7 +198,7 @@ def test_files_are_told_with_what_tells_their_content():
     ({"a": 3}, {}, "'a' must be a Scene, got a int"),
     ({"a": plain()}, {"variant": "b"}, "variant is for case files"),
     ("sawframe_2r63", {"variant": "cam-cirle"}, "cam-cirle"),
-    ("sawframe_2r36", {}, "no such file"),
+    ("sawframe_2r36", {}, "there is no file"),
     ({"a": plain().varied({"slider.mass": np.array([[1.0], [2.0]])})}, {}, "a has arrays, several designs or values"),
     ({1: plain(), "1": plain()}, {}, "'1' labels several scenes"),
 ])  # fmt: skip
