@@ -548,7 +548,7 @@ def _contact_rules(given, groups):
     lacking = [name for name, value in given.items() if value is None] if groups else []
     found, scene_roller = dict(given), groups[0].roller if groups else None
     if lacking and scene_roller is None:
-        raise ParameterError(f"contact: {', '.join(lacking)} must be told, as the scene's CamRoller has no Roller")
+        raise ParameterError(f"contact: give {', '.join(lacking)}, as the scene's CamRoller has no Roller")
     for name in lacking:
         field_name = name.removeprefix("roller_")
         own, other = getattr(scene_roller, field_name), getattr(scene_roller, f"cam_{field_name}", None)

@@ -45,7 +45,7 @@ def read_text(path, largest):
             raise
         raise CaseError(path, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
     if len(content) > largest:
-        raise CaseError(path, [f"cannot be read: it is larger than {largest / 1e6:g} MB, too large for such a file"])
+        raise CaseError(path, [f"cannot be read: it is larger than {largest / 1e6:g} MB, too large for these files"])
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise CaseError(path, ["is not UTF-8 text, but UTF-16; save it as UTF-8"])
     if b"\0" in content:

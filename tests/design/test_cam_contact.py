@@ -193,7 +193,7 @@ def test_contact_defaults_to_the_scenes_roller():
     assert found.modulus == pytest.approx(1.0 / (0.91 / 210e9 + 0.91 / 110e9), rel=1e-15)
     wide = ks.design.contact(own, width=0.24)
     assert_allclose(wide.pressure, own.contact_pressure / 2, rtol=1e-13)
-    with pytest.raises(ks.ParameterError, match=r"width, poissons_ratio must be told, as .* has no Roller"):
+    with pytest.raises(ks.ParameterError, match=r"give width, poissons_ratio, as .* has no Roller"):
         ks.design.contact(solved(), 0.05, youngs_modulus=210e9)
 
 
