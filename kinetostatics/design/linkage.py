@@ -483,7 +483,7 @@ def characteristics(solutions, reference):
     Raises
     ------
     ParameterError
-        The reference is unknown, or a solution is not of such a four-bar with a turning crank.
+        The reference is unknown, or a solution is not of a four-bar with a turning crank and swinging rocker.
 
     Examples
     --------

@@ -23,7 +23,7 @@ class Flywheel:
     Attributes
     ----------
     inertia : float
-        Moment of inertia on the crank besides links and motor, kg m2; 0 if none is needed.
+        Moment of inertia on the crank besides links and motor, kg m2; 0 if it needs no flywheel.
     energy : float
         Fluctuation of energy over the turn, J. Without motor: between the extremes of the turning-moment diagram. With
         a motor: of the flywheel itself.

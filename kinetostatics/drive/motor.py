@@ -64,7 +64,7 @@ class Motor:
         Raises
         ------
         ParameterError
-            A value is impossible; the message lists all such values.
+            A value is impossible; the message lists all impossible values.
 
         Examples
         --------

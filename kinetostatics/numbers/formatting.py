@@ -1,4 +1,4 @@
-"""Numbers, units and headings as text for people: no table, text or explanation shows a digit that is not known.
+"""Numbers, units and headings as text for people: no table, text or explanation shows an uncertain digit.
 
 This module alone decides the number of digits; command line, report, explanations and frames call it. Error messages
 format their few numbers themselves, with six digits as here.
@@ -113,7 +113,7 @@ def round_bound_up(bound):
 
 
 def round_uncertainty_up(uncertainty):
-    """An uncertainty as text with two digits, rounded up unless by less than a thousandth: 0.1 mm stay 0.1 mm."""
+    """An uncertainty as text with two digits, rounded up unless by less than a thousandth: 0.1 mm stays 0.1 mm."""
     return round_bound_up(0.999 * uncertainty)
 
 

@@ -42,7 +42,7 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
 GRAVITY_PLACE, GRAVITY_LENGTH = (0.93, 0.12), 30.0
 """Tip of the arrow of gravity, shares of the axes, and its length, typographic points."""
 DOWNWARDS = np.cos(np.radians(1.0))
-"""Cosine of the angle from -y up to which gravity needs no arrow."""
+"""Cosine of the largest angle from -y without an arrow of gravity."""
 COUNTERWEIGHT_KINDS = ("counterweight", "bar")
 """Kinds of strokes in counterweights."""
 LINES: dict[str, dict[str, Any]] = {
@@ -82,7 +82,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
-        Several must be machines that move alike: the first is drawn, with the counterweights and loads of each.
+        Several machines must have the same motion: the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
     ax : Axes, optional
@@ -152,7 +152,7 @@ def _draw_gravity(ax, gravity):
 
 
 def _draw_own(ax, strokes):
-    """Draw strokes that only some machines have, in colours by machine, with a legend."""
+    """Draw strokes of only some machines, in colours by machine, with a legend."""
     colours: dict[str, Any] = {}
     for stroke, owners in strokes:
         text = f"{'counterweight' if stroke.kind in COUNTERWEIGHT_KINDS else 'load'}: {', '.join(owners)}"

@@ -23,7 +23,7 @@ from .canvas import (
 def crank_speed(runs, ax=None):
     """Crank speed of machines in periodic running over the crank angle, its mean dotted.
 
-    A start or a coast is a `Trajectory` in place of a `Running`: draw its `speed` over its `time`.
+    A start or a coast is a `Trajectory`, not a `Running`: draw its `speed` over its `time`.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def crank_speed(runs, ax=None):
 
 
 def drive_torques(run, ax=None):
-    """Torques at the crank over the crank angle: motor, machine with its inertia, loads alone.
+    """Torques at the crank over the crank angle: motor, machine with inertia, loads only.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def lost_power(solution, ax=None):
 
 
 def losses(solutions, ax=None):
-    """Mean power lost over the turn, a bar for each solution, stacked by joint, damper and drag, the sum on top.
+    """Mean power lost over the turn, a bar for each solution, stacked by joint, damper and drag, with the sum on top.
 
     Parameters
     ----------

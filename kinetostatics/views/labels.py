@@ -1,4 +1,4 @@
-"""Labels that avoid each other and everything drawn; they are placed again whenever a figure is drawn."""
+"""Labels that avoid each other and all drawn objects; every drawing of a figure places them again."""
 
 from typing import Any, NamedTuple
 
@@ -134,7 +134,7 @@ class _Places(NamedTuple):
         return cls(offsets, boxes, [Bbox.from_extents(box) for box in boxes], leaders, reaches)
 
     def crossed(self, path, extents, filled):
-        """Whether a path meets the box of each place, (P,); only boxes within its extents are looked at closely."""
+        """Whether a path meets the box of each place, (P,); only boxes within its extents are tested exactly."""
         count = _overlap(self.boxes, extents[None])[:, 0].astype(int)
         for place in np.flatnonzero(count):
             count[place] = path.intersects_bbox(self.bounds[place], filled=filled)

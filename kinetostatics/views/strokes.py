@@ -78,7 +78,7 @@ PRESSED = 1e-9
 """Contact force, relative to the largest, above which a side of a cam carries force."""
 SURFACE_POINTS = 360
 UNCLIPPED_SHARE = 0.9
-"""Share of the poses in which an unbounded reaction has its arrow in full length."""
+"""Fraction of the poses with a full-length arrow of an unbounded reaction."""
 HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
@@ -396,7 +396,7 @@ def at_angles(solution, degrees):
 
 
 def moves_alike(solution, other):
-    """Whether two machines look the same in every pose, apart from counterweights and loads."""
+    """Whether two machines look the same in every pose, except for counterweights and loads."""
     made, twin = solution.mechanism, other.mechanism
     if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
         return False
@@ -415,7 +415,7 @@ def load_strokes(solution, angle):
 
 
 def strokes_by_owner(named, angle):
-    """Counterweights and signs of loads in a pose, each with the labels of the machines that have it."""
+    """Counterweights and signs of loads in a pose, each with the labels of its machines."""
     found = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
