@@ -17,10 +17,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ...numbers import checks
-from ...numbers.arithmetic import UNIT_ROUNDOFF
+from ...numbers.arithmetic import TURN, UNIT_ROUNDOFF
 from ...numbers.brackets import find_roots
 
-TURN = 2 * math.pi
 MAX_TURNS = 100
 """Largest number of turns in a period."""
 
