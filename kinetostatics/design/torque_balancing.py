@@ -21,9 +21,9 @@ from ..machine.laws.law import PanelLaw, turn_angles
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
 from ..numbers import checks
+from ..numbers.arithmetic import TURN
 from ..numbers.lazy import cached_property
 from ..numbers.panels import Panels
-from ..numbers.arithmetic import TURN
 from ..numbers.planar import dot
 from ..solution.scene import Scene
 from . import spring_follower
