@@ -16,6 +16,7 @@ from ..errors import ParameterError
 from ..machine.builders import four_bar
 from ..machine.group import FRAME, Bar
 from ..numbers import checks
+from ..numbers.arithmetic import TURN
 from ..numbers.formatting import with_units
 from ..numbers.planar import cross, dot
 
@@ -212,7 +213,7 @@ CHAIN_UNIT_RULES = {
     "pivot_x": checks.Optional(checks.Number("m")),
 }
 ANGLE_RULE, START_RULE = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
-QUARTER, TURN, FULL_TURN = pi / 2, 2 * pi, ((0.0, 2 * pi),)
+QUARTER, FULL_TURN = pi / 2, ((0.0, TURN),)
 ROCKER_ANGLES = 720
 """Crank angles per turn that make the rocker angle continuous."""
 

@@ -13,7 +13,7 @@ from ...errors import FileError, MissingLibraryError
 from ...numbers import checks
 from ...numbers.files import write_atomically, write_problem
 from ...numbers.lazy import cached_property
-from .profile import POSITIVE, SIDE_SIGNS, Profile, profile
+from .profile import POSITIVE, SIDE_SIGNS, Profile, flat_face_problem, profile
 
 MM_PER_M = 1000.0
 """Millimetres in a metre; the drawing is in mm, so that it prints one to one."""
@@ -79,8 +79,13 @@ class Sheet:
     def sense(self):
         return "clockwise" if self.clockwise else "counter-clockwise"
 
+    @property
+    def follower(self):
+        """Part that goes around the cam."""
+        return "face" if self.profile.cam.flat else "roller"
+
     def sense_arc(self, degrees, radius):
-        """Points (2, N) of an arc about O in the sense in which the roller goes around."""
+        """Points (2, N) of an arc about O in the sense in which the follower goes around."""
         turn = np.radians((-1.0 if self.clockwise else 1.0) * degrees)
         return radius * np.stack([np.cos(turn), np.sin(turn)])
 
@@ -89,16 +94,18 @@ class Sheet:
         """Lines of notes for the workshop."""
         profile, sharpest, hollow = self.profile, self.profile.smallest_curvature_radius, self.profile.smallest_hollow
         cutter = "" if self.cutter_radius is None else f", cutter radius {self.length_text(self.cutter_radius)}"
+        touch = "flat face" if profile.cam.flat else f"roller radius {self.length_text(profile.roller_radius)}"
         lines = [
-            f"cam for the workshop: {profile.side}, roller radius {self.length_text(profile.roller_radius)}{cutter}, "
-            f"{profile.crank_angle.size} points",
-            f"crank angles counter-clockwise from the zero mark, the +x axis; the roller goes around {self.sense}",
-            f"largest pressure angle {np.degrees(profile.largest_pressure_angle.value):.4g} deg at "
-            f"{np.degrees(profile.largest_pressure_angle.angle):.4g} deg",
+            f"cam for the workshop: {profile.side}, {touch}{cutter}, {profile.crank_angle.size} points",
+            "crank angles counter-clockwise from the zero mark, the +x axis; "
+            f"the {self.follower} goes around {self.sense}",
             "sharpest part of the working curve: "
             + ("none convex" if sharpest is None else f"radius {self.length_text(sharpest.value)}")
             + ("" if hollow is None else f"; tightest hollow: radius {self.length_text(-hollow.value)}"),
         ]
+        if not profile.cam.flat:
+            steepest, angle = map(np.degrees, profile.largest_pressure_angle)
+            lines.insert(2, f"largest pressure angle {steepest:.4g} deg at {angle:.4g} deg")
         error = getattr(profile.cam, "force_error", None)
         if error is not None:
             lines.append(f"from a measured table: forces are uncertain by {error:.2g} of the largest")
@@ -192,7 +199,7 @@ class SvgDrawing:
         self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
         self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
         place = arc[:, 20] + size * (along + [0.0, min(along[1], 0.0)])
-        self._words(place, f"roller goes {self.sheet.sense}", ANCHORS[int(np.rint(along[0])) + 1])
+        self._words(place, f"{self.sheet.follower} goes {self.sheet.sense}", ANCHORS[int(np.rint(along[0])) + 1])
 
     def _draw_dimensions(self):
         """Width and height of the working curve, largest and smallest radius, diameter of the roller."""
@@ -221,7 +228,7 @@ class SvgDrawing:
             along = end / np.hypot(*end) * (1.0 if end[0] >= 0.0 else -1.0)  # read from the left
             place = 0.55 * end + above * size * np.array([-along[1], along[0]])
             self._words(place, text, "middle", np.degrees(np.arctan2(along[1], along[0])))
-        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
+        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}" if self.roller else "flat face"
         self._words(pitch[:, 0] + np.array([0.75, 0.8]) * self.roller, text)
 
     def _line(self, start, stop, kind="thin"):
@@ -267,9 +274,11 @@ def _to_csv(sheet, path):
     add("angle", np.degrees(sheet.profile.crank_angle), "deg", MORE_DECIMALS)
     add("radius", sheet.in_unit(sheet.radius), more=MORE_DECIMALS)
     for name, points in sheet.paths.items():
-        for axis, part in zip("xy", sheet.in_unit(points), strict=True):
-            add(f"{STYLES[name][1]}_{axis}", part)
-    add("pressure_angle", np.degrees(sheet.profile.pressure_angle), "deg")
+        if name != "pitch" or not sheet.profile.cam.flat:  # a flat face touches it
+            for axis, part in zip("xy", sheet.in_unit(points), strict=True):
+                add(f"{STYLES[name][1]}_{axis}", part)
+    if not sheet.profile.cam.flat:
+        add("pressure_angle", np.degrees(sheet.profile.pressure_angle), "deg")
     add("curvature_radius", sheet.in_unit(sheet.profile.curvature_radius))
     rows = zip(*columns.values(), strict=True)
     lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *map(", ".join, rows)]
@@ -315,7 +324,8 @@ WRITERS = {".csv": _to_csv, ".dxf": _to_dxf, ".svg": _to_svg}
 
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
     """Write a cam to a file; ``cam.export`` documents the parameters."""
-    radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
+    radii = {} if cam.flat else {"roller_radius": roller_radius}
+    radii |= {} if cutter_radius is None else {"cutter_radius": cutter_radius}
     problem = checks.count("points", points)
     found = checks.single_numbers(
         "cam export",
@@ -323,13 +333,14 @@ def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwi
         checks.choice("units", units, tuple(UNITS)),
         checks.choice("side", side, tuple(SIDE_SIGNS)),
         checks.truth("clockwise", clockwise),
+        flat_face_problem(cam, roller_radius),
         None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
         **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
     )
     problem, ending = write_problem(path, endings=tuple(WRITERS)), Path(path).suffix.lower()
     if problem or ending not in WRITERS:
         raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
-    working = profile(cam, found["roller_radius"], int(points), side)
+    working = profile(cam, found.get("roller_radius"), int(points), side)
     sheet = Sheet(working, found.get("cutter_radius"), units, clockwise)
     with write_atomically(path) as temporary:
         WRITERS[ending](sheet, temporary)

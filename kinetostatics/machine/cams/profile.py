@@ -84,7 +84,7 @@ class Profile:
     ----------
     cam : Cam
     roller_radius : float
-        m.
+        m; 0 for a flat face.
     crank_angle : array (N,)
         rad.
     side : "disk" or "ring"
@@ -213,11 +213,18 @@ def _roller_side_curvature(cam, angle, side):
     return -SIDE_SIGNS[side] * curvature(cam, angle)
 
 
+def flat_face_problem(cam, roller_radius):
+    """Sentence if a roller is given for the cam of a flat face."""
+    if cam.flat and roller_radius is not None:
+        return "its follower has a flat face, which touches the pitch curve itself; leave roller_radius out"
+    return None
+
+
 def profile(cam, roller_radius, angle, side="disk"):
     """Working curve of a cam, a `Profile`; ``cam.profile`` documents the parameters."""
-    radius = checks.single_numbers(
-        "cam profile", checks.choice("side", side, tuple(SIDE_SIGNS)), roller_radius=(roller_radius, "m", POSITIVE)
-    )["roller_radius"]
+    problems = checks.choice("side", side, tuple(SIDE_SIGNS)), flat_face_problem(cam, roller_radius)
+    rules = {} if cam.flat else {"roller_radius": (roller_radius, "m", POSITIVE)}
+    radius = checks.single_numbers("cam profile", *problems, **rules).get("roller_radius", 0.0)
     if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
         checks.require("cam profile", checks.count("angle", angle, size=checks.BYTES_PER_ANGLE))
         angle = np.linspace(0.0, TURN, int(angle), endpoint=False)
