@@ -36,6 +36,8 @@ TOO_CLOSE, FARTHER = 1.0, 0.04
 MARGINS = 0.28, 0.2
 """Margins for dimensions beside and above the sketch, relative to its size."""
 NOTES_PER_LINE = 3
+ROUNDING = 1e-9
+"""Place of a mass centre beside the other one of its two up to which it is zero."""
 CLEAR_ENOUGH = 0.85
 """Share of the largest distance between joints and links at which the default crank angle is taken."""
 WIDTH, HEIGHTS = 6.4, (2.4, 5.6)
@@ -126,7 +128,8 @@ def _mass_text(name, link):
     """Mass of a link, and its mass centre if it is not at the reference joint."""
     mass = text_of(f"{name}.mass", link.mass, "kg")
     factor, shown = _shown("m")
-    along, across = (formatting.number(factor * part) for part in link.centre)
+    noise = ROUNDING * factor * max(map(abs, link.centre))
+    along, across = (formatting.number(factor * part, bound=noise) for part in link.centre)
     if along == across == "0":
         return mass
     return f"{mass}\n{name}.centre = {along if across == '0' else f'({along}, {across})'}{shown}"
