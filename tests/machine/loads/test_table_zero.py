@@ -147,10 +147,13 @@ def test_a_sweep_moves_the_zero_with_the_guide():
 
 def test_bounds_cover_the_shift():
     """In line, top dead centre is the angle of the guide: the same table by that angle."""
-    one, two = (scene(MACHINES["upright"], zero).solve(ANGLES) for zero in ("TDC", np.pi / 2))
+    rows = np.pi / 2 + AFTER_TDC + 2 * np.pi * np.array([[-3], [0], [7]])
+    angles = np.concatenate([ANGLES, *(np.ravel(rows + off) for off in (0.0, 1e-15, -1e-15, 1e-13, -4e-13))])
+    one, two = (scene(MACHINES["upright"], zero).solve(angles) for zero in ("TDC", np.pi / 2))
     off = np.abs(one.balancing_torque - two.balancing_torque)
     assert np.all(off <= one.error_bound("balancing_torque") + two.error_bound("balancing_torque"))
-    assert largest(one.error_bound("balancing_torque", tight=True)) < 1e-13 * largest(one.balancing_torque)
+    within = one.at(ANGLES)
+    assert largest(within.error_bound("balancing_torque", tight=True)) < 1e-13 * largest(within.balancing_torque)
 
 
 BANKS = ks.SliderGroup(0.2), ks.SliderGroup(0.2, ks.Guide.at(1.5), pin="C", label="2")
