@@ -93,7 +93,7 @@ def _csv(table):
 _angles, _designs = partial(_count, size=checks.BYTES_PER_ANGLE), partial(_count, size=DESIGN)
 CASE = _option("case", "CASE", "a TOML file, or the name of a shipped case: sawframe_2r63", _text)
 VARIANT = _option("--variant", "NAME", "only this variant")
-UNITS = _option("--units", "LIST", 'units of what is shown, "force=kN,length=mm"; SI and degrees else', _units)
+UNITS = _option("--units", "LIST", 'units of results, "force=kN,length=mm" (SI and degrees)', _units)
 JSON = "--json", {"action": "store_true", "help": "results as JSON in place of tables, numbers in full"}
 COMMANDS: dict[str, tuple[Any, ...]] = {
     "list": (
