@@ -18,11 +18,12 @@ from ..machine.cams.profile import POSITIVE, Peak, curvature, highest, surface_c
 from ..machine.cams.profile import profile as working_curve
 from ..machine.loads import Gravity
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.lazy import cached_property
 from .follower_speed import force_changes, lift_off_speed, peak_of, starting_torque
 
 
+@with_units(angle="rad", spin="rad/s", energy="J", rise="N/rad")
 class Reversal(NamedTuple):
     """The roller changes sides: crank angle, rad; change of its spin, rad/s; energy lost in sliding, J.
 
@@ -33,8 +34,6 @@ class Reversal(NamedTuple):
     spin: float
     energy: float
     rise: float
-
-    __repr__ = repr_with_units(angle="rad", spin="rad/s", energy="J", rise="N/rad")
 
     def sliding_angle(self, roller, crank_speed, friction_coefficient):
         """Crank angle through which the roller slides until it rolls again, rad, as the force grows in proportion."""

@@ -9,6 +9,7 @@ from matplotlib.patches import Circle
 from ..numbers import checks
 from ..numbers.output_units import shown_units
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
+from .labels import label
 
 POINTS_PER_TURN = 1440
 """Crank angles of a drawn curve over one turn."""
@@ -62,9 +63,9 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
         ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
         ax.plot(*np.stack([np.zeros(2), centre], axis=1), color=STEEL, lw=0.5, ls=":")
         ax.plot(*touch, ".", color=INK, ms=4)
-        ax.annotate(f"{degrees:g}°", centre, ha="center", va="center", fontsize="x-small")
+        label(ax, f"{degrees:g}°", centre)
     ax.plot(0.0, 0.0, "+", color=INK, ms=8)
-    ax.annotate("O", (0.0, 0.0), xytext=(4, -10), textcoords="offset points", fontsize="small")
+    label(ax, "O", (0.0, 0.0), fontsize="small")
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
     ax.set(xlabel="x [m]", ylabel="y [m]")

@@ -178,7 +178,7 @@ class _Dimensions:
         return np.reshape(self.pose.position(point), (2, -1))[:, 0]
 
     def place(self, lines, costs):
-        """The line (2, K) of lowest cost that keeps clear of what is drawn; from now on others avoid it."""
+        """The line (2, K) of lowest cost that avoids drawn objects; later lines avoid it."""
         samples = [_dense(line, 0.5 * self.unit) for line in lines]
         close = [
             np.mean(np.min(np.hypot(*(self.occupied[:, None] - dense[..., None])), axis=1) < CLEARANCE * self.unit)
