@@ -1,8 +1,8 @@
 """Contact of a roller with its cam over the turn: side, curvature, Hertz pressure, spin, life, and exceeded limits.
 
-A rolling roller turns at v / R, v the speed of its centre along the pitch curve; one way on a disk, the other way in a
-ring, so it reverses where it changes sides. The contact must drive it, J dv/dt / R^2 along the cam, against the
-friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardness of steel by AGMA 2001-D04.
+A rolling roller turns at v / R, v the speed of its centre along the pitch curve. It turns one way on a disk, the other
+way in a ring, so it reverses where it changes sides. The contact must drive it, J dv/dt / R^2 along the cam, against
+the friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardness of steel by AGMA 2001-D04.
 """
 
 from dataclasses import dataclass, field, replace

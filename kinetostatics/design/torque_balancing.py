@@ -1,6 +1,6 @@
 """A spring-loaded follower on a cam on the crank that evens out the torque of any machine at its design speed.
 
-The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T): the cam relaxes it as E
+The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T). The cam relaxes it as E
 rises, so the motor gives only the mean torque. The equation of `spring_follower` includes the follower's own inertia,
 so no iteration is needed.
 """

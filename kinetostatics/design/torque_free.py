@@ -322,9 +322,9 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     Returns
     -------
     pandas.DataFrame
-        Rows "symmetric", "sine terms", "coupler spring" (the slider and the guide take its couple) and "counterweight"
-        (with sine terms; O takes its centrifugal force), with the outputs of their reports; "bound" is that of the
-        symmetric cam.
+        Rows "symmetric", "sine terms", "coupler spring" and "counterweight" (with sine terms), with the outputs of
+        their reports. The slider and the guide take the couple of the coupler spring, O the centrifugal force of the
+        counterweight. "bound" is that of the symmetric cam.
 
     Raises
     ------

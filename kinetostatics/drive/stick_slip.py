@@ -45,7 +45,7 @@ PLACES = np.array([-1.0, -0.5, 0.0, 0.5])
 class Stretch(NamedTuple):
     """Pieces of a motion in order: columns of series over a place from -1 to 1 that rises with time.
 
-    `root` is 1 for a piece that starts at a standstill, -1 for one that ends there, else 0: the speed is that of its
+    `root` is 1 for a piece that starts at a standstill, -1 for one that ends there, else 0. The speed is that of its
     series times (1 + root place) / 2.
     """
 

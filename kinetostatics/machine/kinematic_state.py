@@ -82,9 +82,9 @@ UNKNOWN_COURSE = Course()
 class Placement:
     """Mechanism at its crank angles, in tables that the groups fill from the crank outwards.
 
-    `ray` is the direction of the crank. `joints` and `links` are by name; `travels` holds coordinates along guides with
-    kinematic coefficients by slider, `courses` a `Course` by joint if known, `details` the motion that a group
-    needs again, by its first link.
+    `ray` is the direction of the crank. `joints` and `links` are by name, `travels` by slider: coordinates along guides
+    with kinematic coefficients. `courses` is a `Course` by joint if known, `details` the motion that a group needs
+    again, by its first link.
     """
 
     angle: Any

@@ -33,8 +33,8 @@ MIN_MASS = 1e-75
 MAX_PEAK_DISTANCE = np.radians(60.0)
 """Distance of the largest force of a table on a slider from a dead centre beyond which its zero may be missing, rad."""
 PEAK_SHARE, MAX_PEAK_WIDTH, MAX_SUCTION = 0.99, np.radians(90.0), 0.2
-"""Of an indicator diagram: share of the largest force from which rows belong to its peak, largest width of the peak at
-half its height, rad, and largest share of forces of the other sign."""
+"""Limits of an indicator diagram, relative to its largest force: least force of its peak, largest force of the other
+sign. `MAX_PEAK_WIDTH` is the largest width of the peak at half its height, rad."""
 RATE_STEP = np.radians(5.0)
 RATE_ANGLES = 1e-3 + RATE_STEP * np.arange(73)
 """Crank angles between which the dead centres of a slider are expected, rad, and their step."""
@@ -210,10 +210,14 @@ def loads_beside_rods(mechanism, loads):
 def compared_sizes(mechanism):
     """Numbers that the compiled plausibility test compares.
 
-    In order: all lengths together; the lengths whose shortest one counts; the bars; pairs of inertia and mass; triples
-    of inertia, mass and bar length; pairs of a bar's length and its distance from the arm of its inner joint. The
-    mechanism has no hints if no bar is as long as its arm, the longest length is neither huge nor huge relative to the
-    shortest, and no inertia is small relative to that bar, or large.
+    In order:
+
+    - all lengths together; the lengths whose shortest one counts; the bars
+    - pairs of inertia and mass; triples of inertia, mass and bar length
+    - pairs of a bar's length and its distance from the arm of its inner joint
+
+    There are no hints if no bar is as long as its arm, the longest length is not huge, and no inertia is small or large
+    relative to its bar.
     """
     reaches = [reach for part in mechanism.parts for reach in part.reaches]
     bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]

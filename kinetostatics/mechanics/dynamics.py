@@ -16,8 +16,8 @@ away too h = 2 w c / (w + |c|):
     w - h = w (w - c + |c| - c) / (w + |c|),    c - h = c (|c| - w) / (w + |c|)
 
 These keep all digits of w - c, and no term exceeds three times inertia and spring force. The force of a stiffening
-spring, c = k + q e^2, counts each rounding of e three times. If e, or its opposite, is a constant length l and a small
-part p, the force is that of a constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
+spring, c = k + q e^2, counts each rounding of e three times. Let e, or its opposite, be a constant length l and a small
+part p. The force is then that of a constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
 """
 
 import warnings

@@ -17,7 +17,7 @@ class CrankshaftResults:
     def rocking_moment(self):
         """Moment of the inertia of all moving masses on the frame about the axes x and y through O, (2, ..., N), N m.
 
-        The sum of (-z_i F_iy, z_i F_ix) over the shaking force F_i in each plane z_i, z toward the viewer; about the
+        The sum of (-z_i F_iy, z_i F_ix) over the shaking force F_i in each plane z_i, z toward the viewer. About the
         plane z0 it is M - z0 k x F.
 
         Examples

@@ -1,8 +1,8 @@
 """Axial force, shear force and bending moment inside a straight link, over its length and the turn.
 
-The part of a link from its first pin to a section is in equilibrium: inertia, weight, forces of pins and loads on it,
-and the forces of the section (d'Alembert; Timoshenko, *Strength of Materials*). With x from the first pin along t, n
-the left normal of t, mu the mass per length, and the acceleration a, which is linear in x:
+The part of a link from its first pin to a section is in equilibrium. Its forces are inertia, weight, pins, loads and
+the forces of the section (d'Alembert; Timoshenko, *Strength of Materials*). With x from the first pin along t, n the
+left normal of t, mu the mass per length, and the acceleration a, which is linear in x:
 
     N' = mu (a - g).t        V' = mu (g - a).n        M' = V
 
@@ -272,8 +272,9 @@ class WithSections:
         Raises
         ------
         ParameterError
-            Mass, centre or inertia of the bar are not those of the link; a force on the link acts off the line of its
-            pins, moves along it, or is a couple without a place; the mechanism does not close all round; a batch.
+            Mass, centre or inertia of the bar are not those of the link. A force on the link acts off the line of its
+            pins, moves along it, or is a couple without a place. The mechanism does not close all round or has several
+            designs.
         QuantityError
             The link is unknown.
 

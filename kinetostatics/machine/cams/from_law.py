@@ -1,11 +1,11 @@
 """Cam that makes a slider follow a law of the whole turn: its one coupler length, and its radius free of cancellation.
 
-In the guide's own axes, with phi the crank angle from its direction, x(phi) the law and e the offset, B = (x, e) is
-d = x sin(phi) - e cos(phi) off the crank ray, and A on the ray at the coupler's length L from B:
+In the axes of the guide let phi be the crank angle from its direction, x(phi) the law and e the offset. B = (x, e) is d
+= x sin(phi) - e cos(phi) off the crank ray, and A on the ray at the coupler's length L from B:
 
     r = x cos(phi) + e sin(phi) - w,   w^2 = (L - d) (L + d)
 
-B is ahead of A at phi = 0 and past it half a turn on, so w must change its sign: smoothly only where it has a double
+B is ahead of A at phi = 0 and past it half a turn on, so w must change its sign. It does so smoothly only at a double
 zero, at phi1 with d = max d = L and at phi2 with d = min d = -L. With h1 = phi - phi1 and h2 = phi - phi2
 
     L - d = h1^2 q1,   L + d = h2^2 q2,   q1 = - integral over s from 0 to 1 of (1 - s) d''(phi1 + s h1)
@@ -195,8 +195,8 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     Parameters
     ----------
     law : Law
-        Coordinate of the slider along the guide from the foot of O, m, by the crank angle from the guide's direction:
-        from `laws`, or a function that gives position and three derivatives of a whole turn.
+        Coordinate of the slider along the guide from the foot of O, m, by the crank angle from the guide's direction.
+        It is from `laws`, or a function that gives position and three derivatives.
     coupler_length : float, optional
         m; by default computed. A smooth cam exists for one length only.
     guide_angle : float

@@ -1,9 +1,9 @@
 """Working curve of a cam for a roller, the path of its cutter, and the limits of both: undercutting and collisions.
 
-With kappa the curvature of the pitch curve, positive where it is convex seen from outside, R the radius of the roller:
-a disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R), both
-positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the ring
-where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+Let kappa be the curvature of the pitch curve, positive where it is convex seen from outside, and R the radius of the
+roller. A disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R).
+Both are positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the
+ring where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
 import warnings

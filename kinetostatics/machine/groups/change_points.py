@@ -233,8 +233,8 @@ def slotted(placement, on, pivot, offset, passage, side):
     The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. The divisor is the reach, as
     a factor and the distance from the change point.
 
-    With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
-    by a quarter of the angle: it is small where A passes close by the pivot.
+    With the pivot at the distance d the rates have another divisor, (a+d)/2 +- sqrt(a d) cos(psi/2). It is a sum of
+    squares by a quarter of the angle. It is small where A passes close by the pivot.
     """
     kind, facing = parse_passage(passage)
     a, ahead = placement.course(on).throw.polar

@@ -102,9 +102,14 @@ class PlanetaryCrank(checks.Checked, Group):
 
     Notes
     -----
-    Reactions: `on` (N) on the planet, from the arm; "mesh" (N), ring on planet, at the pitch point; "tooth_force" (N),
-    its tangential part, positive counter-clockwise about O. The other part, its size times the tangent of the pressure
-    angle, presses the planet off the ring. The teeth have no friction and no play.
+    Reactions:
+
+    - `on` (N): on the planet, from the arm.
+    - "mesh" (N): ring on planet, at the pitch point.
+    - "tooth_force" (N): its tangential part, positive counter-clockwise about O. The other part, its size times the
+      tangent of the pressure angle, presses the planet off the ring.
+
+    The teeth have no friction and no play.
 
     Examples
     --------

@@ -115,8 +115,9 @@ class TurnTable:
     def noise(self):
         """Standard deviation of the values about a smooth curve; for values rounded to a step, 0.29 of the step.
 
-        From the root mean square distance of the values from polynomials through `reach` neighbours on both sides, with
-        the reach that gives the smallest; scaled to the standard deviation of independent noise in every value.
+        It follows from the root mean square distance of the values from polynomials through `reach` neighbours on both
+        sides, for the reach with the smallest distance. It is scaled to the standard deviation of independent noise in
+        every value.
         """
         angle, values, size, found = self.angle, self.values, self.angle.size, []
         for reach in range(2, min(7, (size + 1) // 2)):
@@ -136,8 +137,8 @@ class TurnTable:
         """Expected largest error of the second derivative over the turn, from noise and coarseness of the table.
 
         The spline through every second point has 2^4 times the truncation error, so the difference of both splines
-        bounds noise and truncation, and a twelfth of it (1/15 and a margin for coarse tables) the truncation. Noise is
-        bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
+        bounds noise and truncation. A twelfth of it (1/15 and a margin for coarse tables) bounds the truncation. Noise
+        is bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
         """
         nodes, _ = _periodic(self.angle, self.values)
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)

@@ -73,7 +73,7 @@ class Table:
     ------
     ParameterError
         Over the angle: fewer than three rows, angles that do not rise, rows over more or less than a period, unequal
-        ends; over travel: fewer than two rows, coordinates that do not rise. When a scene is made: a dead centre, or
+        ends. Over travel: fewer than two rows, coordinates that do not rise. When a scene is made: a dead centre, or
         travel, of none or several sliders. When it is solved: the slider leaves the table; it has not one far and one
         near dead centre, or the mechanism does not close all round.
 
