@@ -251,21 +251,20 @@ def _epilog(example, *notes):
 
 def parser():
     """The parser; ``options.command`` is module and function of the command, ``options.word`` its name."""
-    styled = {"formatter_class": argparse.RawDescriptionHelpFormatter}
+    style = argparse.RawDescriptionHelpFormatter
     main = argparse.ArgumentParser(
         prog="kinetostatics",
         description="Forces and drive torque of planar mechanisms, from a case file.",
         epilog=_epilog(EXAMPLES["run"], WIDTH_NOTE),
-        **styled,
+        formatter_class=style,
     )
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
     for name, (function, text, *options) in COMMANDS.items():
         formats = " and ".join(option for option, _ in options if option in ("--json", "--csv"))
         epilog = _epilog(EXAMPLES[name], *([f"For other programs: {formats}, numbers in full."] if formats else []))
-        command = group.add_parser(
-            name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=epilog, **styled
-        )
+        words = f"{text[0].upper()}{text[1:]}."
+        command = group.add_parser(name, help=text, description=words, epilog=epilog, formatter_class=style)
         command.set_defaults(command=function, word=name)
         for option, settings in options:
             command.add_argument(option, **settings)

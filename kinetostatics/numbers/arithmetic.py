@@ -11,6 +11,8 @@ import numpy as np
 
 from ..errors import ParameterError
 
+TURN = 2.0 * np.pi
+"""Full turn, rad."""
 _namespaces = dict.fromkeys((np.ndarray, np.float64, float, int), np)
 
 

@@ -98,6 +98,7 @@ def require_columns(name, table, columns):
         problem = f"table must be a pandas DataFrame, got a {type(table).__name__}"
     elif missing:
         problem = f"the table has no column {', '.join(map(repr, missing))}; it has {', '.join(map(str, found))}"
+        problem += checks.hint(missing[0], found)
     elif not len(table):
         problem = "the table has no rows"
     checks.require(name, problem)
@@ -121,7 +122,9 @@ def grouped(items, alike):
 
 
 LONG_LABEL = 20
-"""Number of letters of a label above which the legend has at most two columns."""
+"""Letters of a label from which on the legend has two columns at most."""
+MAX_LEGEND_SHARE = 0.35
+"""Height of a legend, relative to the axes, above which it stands beside them."""
 LEGEND_COLUMNS = (3, 2, 1)
 """Numbers of legend columns to try, until the legend fits into the axes."""
 SAME_CURVE_TOLERANCE = 2e-3
@@ -258,7 +261,10 @@ def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
             box = ax.legend(handles, texts, ncols=columns, **style).get_window_extent()
             if box.width <= ax.bbox.width:
                 break
-        share = min(box.height / ax.bbox.height, 0.4)
+        share = box.height / ax.bbox.height
+        if share > MAX_LEGEND_SHARE:
+            ax.legend(handles, texts, **style | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)})
+            share = 0.0
         ax.margins(y=max(0.18, share / (1.0 - 2.0 * share)))
     if ax.dataLim.ymin >= -ZERO_TOLERANCE * ax.dataLim.ymax:
         ax.set_ylim(bottom=-0.05 * ax.dataLim.ymax or None)
@@ -364,13 +370,27 @@ def _reason_missing(closed, solution):
 
 
 def draw_over_turn(ax, named, curves, label, unit, counted):
-    """Draw curves (2, N) over the longest period, with gaps shaded and values without bound off the scale."""
-    draw_curves(ax, curves)
-    period = round(np.degrees(max(solution.period for solution in named.values())))
+    """Draw curves (2, N) over the longest period, with gaps shaded and values without bound off the scale.
+
+    Curves of a shorter period are repeated.
+    """
+    longest = max(solution.period for solution in named.values())
+    draw_curves(ax, {name: _repeated(curve, named[name].period, longest) for name, curve in curves.items()})
+    period = round(np.degrees(longest))
     finish_axes(ax, label, len(named) > 1, period, counted)
     limit_axis(ax, [value for _, value in curves.values()], unit)
     shade_gaps(ax, named, curves, counted)
     return ax
+
+
+def _repeated(curve, period, longest):
+    """Curve (2, N) over a period, over as many periods as fit into the longest, closed between them."""
+    angle, value = curve
+    turns = np.arange(round(longest / period))
+    span = np.ptp(angle) + np.max(np.diff(angle), initial=0.0)
+    if turns.size < 2 or abs(span - np.degrees(period)) > np.max(np.diff(angle), initial=0.0):
+        return curve
+    return np.stack([np.ravel(angle + np.degrees(period) * turns[:, None]), np.tile(value, turns.size)])
 
 
 def panels(count, columns, width, height, more=0.0):

@@ -204,7 +204,8 @@ def losses(solutions, ax=None):
     >>> [text.get_text() for text in ks.plots.losses({"greased": s}).get_xticklabels()]
     ['greased']
     """
-    named = solutions_by_label(solutions if isinstance(solutions, Mapping) else {"solution": solutions}, "lost power")
+    several = isinstance(solutions, Mapping)
+    named = solutions_by_label(solutions if several else {"": solutions}, "lost power")
     _require_losses(named)
     ax = axes(ax)
     lost = {name: solution.losses for name, solution in named.items()}
@@ -218,7 +219,8 @@ def losses(solutions, ax=None):
     for place, top in zip(places, bottom, strict=True):
         ax.annotate(f"{top:.3g}", (place, top), (0, 3), textcoords="offset points", ha="center", fontsize="small")
     slanted = max(map(len, lost)) * len(lost) > 45
-    ax.set_xticks(places, list(lost), **({"rotation": 25, "ha": "right"} if slanted else {}))
+    texts = list(lost) if several else [""]
+    ax.set_xticks(places, texts, **({"rotation": 25, "ha": "right"} if slanted else {}))
     ax.set_ylabel(f"mean power lost [{unit}]")
     ax.set_xlim(-0.6, len(lost) - 0.4)
     ax.set_ylim(0, 1.12 * bottom.max() or 1.0)

@@ -3,6 +3,7 @@
 `FIGURES` lists the figures of a case by name, with the condition for each.
 """
 
+import textwrap
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -182,7 +183,7 @@ def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
     figure, axes = panels(len(solutions), columns, width, height)
     for ax, (name, solution) in zip(axes, solutions.items(), strict=True):
         plot(solution, ax=ax)
-        ax.set_title(name)
+        ax.set_title(textwrap.fill(name, round(LETTERS_PER_INCH * width), break_on_hyphens=False))
     return figure
 
 
@@ -219,6 +220,8 @@ DRAWN_ANGLES = (40.0, 160.0, 280.0)
 """Crank angles at which mechanisms are drawn, degrees."""
 WIDE_RATIO = 1.7
 """Width over height above which a mechanism is drawn across the page."""
+LETTERS_PER_INCH = 9
+"""Letters of a title over an inch of its axes."""
 TITLE_HEIGHT = 0.8
 """Height of title and labels of axes, inches."""
 

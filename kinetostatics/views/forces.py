@@ -161,7 +161,7 @@ def free_body(solution, link, angle, ax=None):
 
 def _draw_link(ax, shape, solution, link):
     """Draw a link in its pose with its joints and mass centre; its extent, m."""
-    strokes = list(shape.strokes(solution, (link,)))
+    strokes = [*shape.strokes(solution, (link,)), *shape.ties(solution, solution.loads, (link,))]
     for stroke in strokes:
         set_points(stroke_artist(ax, stroke, 0.55), stroke.points[..., 0])
     places = [solution.position((link, *corner))[:, 0] for corner in shape.corners[link].T]

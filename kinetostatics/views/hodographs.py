@@ -218,9 +218,9 @@ def _draw(ax, given, name, marks, counted, on=None, styles=None):
 
 
 def _extents(curves, most):
-    """Width or height of each curve, up to a largest one."""
-    finite = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
-    return {name: min(np.ptp(part, axis=1).max() if part.size else 0.0, most) for name, part in finite.items()}
+    """Width or height of each curve with the origin, up to a largest one."""
+    drawn = {name: np.column_stack([np.nan_to_num(curve), (0.0, 0.0)]) for name, curve in curves.items()}
+    return {name: min(np.ptp(curve, axis=1).max(), most) for name, curve in drawn.items()}
 
 
 def write_angles(ax, solution, curve, rows, near, counted, color):

@@ -17,7 +17,7 @@ from ..group import FRAME
 from ..links import Wrench, present
 from ..supports import Support
 from .load import Jumps, Load, Symbol, unknown_sense, value_rule
-from .table_pieces import TURN, sign_changes
+from .table_pieces import TURN, turning_points
 
 ANGLE_SAMPLES = 720
 """Crank angles a turn at which the angle of a torsion spring is tested for half a turn."""
@@ -167,8 +167,7 @@ class Torque(Couple):
     def _reversals(self, motion):
         mechanism = motion.mechanism
         with np.errstate(invalid="ignore", divide="ignore"):
-            *_, found = sign_changes(lambda angle: number_or_zero(self._ratio(mechanism.place(angle))), mechanism.turns)
-        return np.mod(found, TURN * mechanism.turns)
+            return turning_points(lambda at: number_or_zero(self._ratio(mechanism.place(at))), mechanism.turns).angle
 
 
 @dataclass(frozen=True, eq=False)

@@ -225,11 +225,11 @@ def glance(subject):
         joint = "O" if "O" in solution.reactions else solution.reactions[-1]
         peak, reaction = (_largest(machine.extremes[name]) for name in ("balancing_torque", joint))
         gain = "" if machine is reference else ratio_text(base / mean) if mean > 1e-12 * base else "∞"
-        drive = ((torque, solution.mean_torque), (power, solution.mean_power))
-        drive = [number(factor * part, 5) if any(works) else "" for factor, part in drive]
-        cells = [machine.name, machine.scene.mechanism.name, number(torque * mean, 5), gain, *drive, peak]
+        drive = (torque * solution.mean_torque, power * solution.mean_power)
+        cells = [machine.name, machine.scene.mechanism.name, number(torque * mean, 5), gain]
+        cells += [number(part, 5) if any(works) else "" for part in drive]
         lost = number(power * solution.losses.total, 5) if lose(solution) else ""
-        rows.append([*cells, reaction, lost, number(solution.power_residual, 2)])
+        rows.append([*cells, peak, reaction, lost, number(solution.power_residual, 2)])
     heads = ["machine", "kind", "mean |torque| [N m]", "ratio of means", "mean torque [N m]", "mean power [W]"]
     heads += ["largest |torque| [N m]", "largest reaction O [N]", "power lost [W]"]
     heads = [*map(_heading_in_units, heads), "power balance"]
