@@ -561,7 +561,7 @@ def _require_balanceable(mechanism):
         pin = next(iter(mechanism.curves), "A")
         raise ParameterError(
             f"the pin {pin} of a {mechanism.name} moves at a varying distance from O with {carried.get(pin, 0.0):g} kg "
-            "on it, so no counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
+            "on it, so no counterweight on the crank balances it. Use `optimal`, or a plain crank-slider"
         )
 
 

@@ -318,7 +318,7 @@ def true_value(output, scene, angles=5760):
         ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
         if rough:
             raise DesignError(
-                f"{plain} of {scene.mechanism.name} is not resolved even by the finest pieces of the turn; if a load "
+                f"{plain} of {scene.mechanism.name} is not resolved even by the finest pieces of the turn. If a load "
                 "jumps, let it rise over a degree, or declare the place by kinks(motion)"
             )
         return float(found)

@@ -123,7 +123,7 @@ def sense_from_rest(driven, angle):
         raise DriveError(
             f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
             f"way: {forward:.6g} N m drive it on counter-clockwise, {backward:.6g} N m drive it on "
-            "clockwise; give a small from_speed in the wanted sense",
+            "clockwise. Give a small from_speed in the wanted sense",
             crank_angle=angle,
         )
     return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0

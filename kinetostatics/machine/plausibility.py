@@ -114,9 +114,9 @@ def _surge_hints(mechanism, spring, crank_speed):
     worst = np.unravel_index(np.argmin(ratio), ratio.shape)
     if ratio[worst] < surge.MIN_RATIO:
         yield (
-            f"{spring.title}: its surge ratio is {ratio[worst]:.3g}, below {surge.MIN_RATIO:g}: with "
+            f"{spring.title}: its surge ratio is {ratio[worst]:.3g}, below {surge.MIN_RATIO:g}. With "
             f"{mass[worst]:.6g} kg it swings between its ends at {natural[worst]:.4g} rad/s, and harmonic {order:g} of "
-            f"the slider, the highest that counts, drives it at {driven[worst]:.4g} rad/s; waves in the spring, which "
+            f"the slider, the highest that counts, drives it at {driven[worst]:.4g} rad/s. Waves in the spring, which "
             f"its `mass` leaves out, change the stiffness of its end by {surge.wave_percentage(ratio[worst])}"
         )
 
@@ -137,7 +137,7 @@ def table_hints(motion):
         elif table is not None and checks.has_known_values(speed) and np.all(speed * table.sense < 0.0):
             yield (
                 f"{load.title}: its table from {table.zero} has sense={table.sense:+d}, but the crank turns at "
-                f"{_most(speed):.6g} rad/s, so it is read backwards; for degrees after {table.zero} in the sense of "
+                f"{_most(speed):.6g} rad/s, so it is read backwards. For degrees after {table.zero} in the sense of "
                 f"rotation give sense={-table.sense:+d}"
             )
 
@@ -166,7 +166,7 @@ def _peak_hints(motion, load, table):
         yield (
             f"{load.title}: the largest value of its table, {table.largest:.6g} N at {np.degrees(peaks[0]):.4g} deg, "
             f"is {np.degrees(distance[far[0]]):.4g} deg from the dead centres of {load.on!r}, TDC at {top:.4g} deg and "
-            f'BDC at {bottom:.4g} deg; is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
+            f'BDC at {bottom:.4g} deg. Is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
             "is the crank angle from +x"
         )
 
@@ -191,7 +191,7 @@ def load_hints(mechanism, loads):
         place = f"({', '.join(map(repr, other))})" if isinstance(other, tuple) else repr(other)
         yield (
             f"{load.title}: it acts along the {slot.link} on {slot.joint!r}, a joint of the "
-            f"{mechanism.joints[slot.joint].link}, so the {slot.rod} does not carry it; for the pressure in the "
+            f"{mechanism.joints[slot.joint].link}, so the {slot.rod} does not carry it. For the pressure in the "
             f'{slot.link} give a place on the {slot.rod}, between=(("{slot.rod}", 0.0, 0.0), {place})'
         )
 

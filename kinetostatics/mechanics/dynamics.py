@@ -92,7 +92,7 @@ class Dynamics(Motion):
                 if np.any(lost > MAX_POWER_ERROR * scale):
                     warnings.warn(
                         f"{self.mechanism.name}: the balancing torque from the forces differs from that of the power "
-                        f"balance by up to {np.nanmax(lost):.3g} N m, for terms of {np.nanmax(scale):.3g} N m; a group "
+                        f"balance by up to {np.nanmax(lost):.3g} N m, for terms of {np.nanmax(scale):.3g} N m. A group "
                         "of your own places its links or resolves its forces wrongly, see ks.check(group)",
                         stacklevel=1,
                     )

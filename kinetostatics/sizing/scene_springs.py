@@ -122,7 +122,7 @@ def spring_for(scene, spring="spring", **options):
     if stiffness == np.inf or abs(stiffness - before) > TOLERANCE * stiffness:
         raise ParameterError(
             f"spring_for: no {found.arrangement} springs of {found.material.name} balance {balance / speed**2:.6g} kg: "
-            f"their surge ratio is {np.pi / z:.3g}, and at 2 or less their own mass uses up all stiffness; allow more "
+            f"their surge ratio is {np.pi / z:.3g}, and at 2 or less their own mass uses up all stiffness. Allow more "
             "stress, or use gas springs (ks.GasSpring), or none"
         )
     given = {item.name: getattr(found, item.name) for item in fields(found) if item.init}

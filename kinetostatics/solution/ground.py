@@ -73,7 +73,7 @@ class Ground(Mapping):
         ):
             warnings.warn(
                 f"{self.solution.mechanism.name}: the forces on the frame lack up to {np.nanmax(force):.3g} N and "
-                f"{np.nanmax(moment):.3g} N m about O, because a group of your own loads the frame by more than its "
+                f"{np.nanmax(moment):.3g} N m about O. A group of your own loads the frame by more than its "
                 "declared pairs with the frame (kinetostatics.machine.group)",
                 stacklevel=2,
             )

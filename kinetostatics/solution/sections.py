@@ -370,9 +370,9 @@ def _own_bar(bar, link, start, length, owner):
     lost = (mass - link.mass, np.hypot(centre - along, across), inertia - link.inertia)
     sizes = (link.mass, length, max(link.mass * length**2, link.inertia))
     text = (
-        f"the bar is not the link: its mass, {mass:.6g} kg, differs by {lost[0]:+.4g} kg, its centre, {centre:.6g} m "
-        f"from the first pin, by {lost[1]:.4g} m, its moment of inertia, {inertia:.6g} kg m2, by {lost[2]:+.4g} kg m2; "
-        "give the link these numbers, or change the bar"
+        f"the bar is not the link. Its mass, {mass:.6g} kg, differs by {lost[0]:+.4g} kg, its centre, {centre:.6g} m "
+        f"from the first pin, by {lost[1]:.4g} m, its moment of inertia, {inertia:.6g} kg m2, by {lost[2]:+.4g} kg m2. "
+        "Give the link these numbers, or change the bar"
     )
     equal = all(abs(part) <= TOLERANCE * size for part, size in zip(lost, sizes, strict=True))
     last = max((x for x, _ in bar.masses), default=0.0)

@@ -241,7 +241,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     if coupler_length is not None and abs(values["coupler_length"] - length) > 1e-9 * length:
         raise ParameterError(
             f"from_law: a smooth cam makes this law with a coupler of {length:.10g} m only, where it is across the ray "
-            f"at {_degrees(far)} and {_degrees(near)} deg from the guide, got {values['coupler_length']:.10g} m; leave "
+            f"at {_degrees(far)} and {_degrees(near)} deg from the guide. Got {values['coupler_length']:.10g} m; leave "
             "coupler_length out to have it computed"
         )
     cam = LawCam(law, length, values["guide_angle"], offset, far, near)
@@ -284,7 +284,7 @@ def _two_lengths_message(law, offset, far, near):
             remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: {shifted}"
             break
     return (
-        f"from_law: no smooth cam makes this law: the coupler would have to be {far.length:.10g} m long at "
+        f"from_law: no smooth cam makes this law. The coupler would have to be {far.length:.10g} m long at "
         f"{_degrees(far)} deg from the guide, and {near.length:.10g} m at {_degrees(near)} deg, where it is across the "
         f"ray; {remedy}"
     )

@@ -68,9 +68,9 @@ class TurnTable:
         if self.force_error >= 0.01:
             remedy = ", or state their noise to have them smoothed" if noise is None else ""
             self._warn(
-                f"{angle.size} points are too coarse or too noisy: {self.SECOND} is uncertain by up to "
+                f"{angle.size} points are too coarse or too noisy. {self.SECOND} is uncertain by up to "
                 f"{self.second_derivative_error:.2g} m (the {self.VALUES} scatter by {self.noise:.2g} m about a smooth "
-                f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, "
+                f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced. Measure more exactly, "
                 f"write more digits{remedy}",
                 stacklevel=4,
             )
@@ -81,7 +81,7 @@ class TurnTable:
         if self._fit(self.values) is None:
             raise ParameterError(
                 f"{self.OWNER}: no smooth curve comes within a noise of {stated:.3g} m of the {self.VALUE} values, "
-                f"which scatter by {scatter:.3g} m; state the noise that they have, or none to pass through every point"
+                f"which scatter by {scatter:.3g} m. State the noise that they have, or none to pass through every point"
             )
         if not scatter / MAX_NOISE_RATIO <= stated <= scatter * MAX_NOISE_RATIO:
             more = stated > scatter

@@ -166,8 +166,8 @@ class GasSpring(SliderLoad):
             )
             yield checks.Problem(
                 f"{self.title}: no volume is left at {angle.size} crank angles, {'the first ' * (angle.size > 3)}"
-                f"{many} deg; its {given:.6g} m3 at {at:.6g} m end at {at - self.side * given / area:.6g} m, but the "
-                f"slider goes on by up to {-left / area:.6g} m; give more volume or less area, or the other side",
+                f"{many} deg. Its {given:.6g} m3 at {at:.6g} m end at {at - self.side * given / area:.6g} m, but the "
+                f"slider goes on by up to {-left / area:.6g} m. Give more volume or less area, or the other side",
                 gone,
             )
 
