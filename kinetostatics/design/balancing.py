@@ -360,8 +360,8 @@ def optimal(
     Raises
     ------
     ParameterError
-        The norm or a link is unknown, there is no counterweight, or limits cannot be kept. Forces are wanted along and
-        across guides that are not parallel, or no counterweight changes the moment.
+        The norm or a link is unknown, there is no counterweight, or limits cannot be kept. Forces are required along
+        and across guides that are not parallel, or no counterweight changes the moment.
     AssemblyError
         The mechanism does not close all round the turn, with the crank angles.
 

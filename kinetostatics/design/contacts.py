@@ -284,7 +284,7 @@ def contact(
 
 
 def _group_of(mechanism, follower):
-    """Group whose contact is wanted: of that link, else the roller on a fixed cam, else the only follower."""
+    """Group of the contact: that of the link, else the roller on a fixed cam, else the only follower."""
     groups = {group.led[0].link: group for group in mechanism.groups if group.led}
     if not groups:
         raise ParameterError(

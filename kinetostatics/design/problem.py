@@ -111,7 +111,7 @@ class Problem:
     vary : mapping of path to (low, high)
         SI numbers, or texts with units.
     quantities : sequence of str
-    reference : Scene or alike, optional
+    reference : Scene or similar, optional
         Reference of ratios; it runs at the design's speed, with its other numbers constant.
     angles : int
         Crank angles evenly over the period.

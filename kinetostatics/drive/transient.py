@@ -221,8 +221,8 @@ def _start_error(driven, angle, what):
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
         f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads take "
-        f"{here:.6g} N m at rest{rubbing}, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing. Over the turn "
-        f"the loads take up to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: "
+        f"{here:.6g} N m at rest{rubbing}, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing. Over the "
+        f"turn the loads take up to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: "
         f"{', '.join(remedies)}",
         missing,
         angle,

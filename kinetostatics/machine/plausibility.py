@@ -25,7 +25,7 @@ OTHER_UNITS = {8333.0: ("kg mm2", 1e-6), 30.0: ("kg cm2", 1e-4)}
 MAX_LENGTH = 100.0
 """Largest plausible length of a link, m."""
 MAX_LENGTH_RATIO = 2000.0
-"""Largest plausible length of the longest link over the shortest: millimetres beside metres give more."""
+"""Largest plausible length of the longest link over the shortest: millimetres mixed with metres give more."""
 MAX_PIN_SPEED = 60.0
 """Largest plausible speed of a crank's pin, m/s: racing engines reach 50."""
 MIN_MASS = 1e-75
@@ -260,7 +260,7 @@ def _on_arms(mechanism):
 def _inertia(bar, link, crank):
     """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass.
 
-    A link that goes on beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
+    A link that extends beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
     """
     if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None

@@ -291,7 +291,7 @@ class Dynamics(Motion):
         return self.as_vector(shaft.rocking_moment(self))
 
     def shaft_torque(self, group, drive="right"):
-        """Torque in the crankshaft beside the throw of a group, by its first link, (..., N), N m."""
+        """Torque in the crankshaft next to the throw of a group, by its first link, (..., N), N m."""
         return self._scalar(shaft.shaft_torque(self, group, drive))
 
     def ground_force(self, place=None):

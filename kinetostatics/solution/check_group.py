@@ -87,7 +87,7 @@ def check(group):
 
     Parameters
     ----------
-    group : SliderGroup, RockerGroup, CamRoller or alike
+    group : SliderGroup, RockerGroup, CamRoller or similar
         Its members are listed in `kinetostatics.machine.group`; a single design.
 
     Returns

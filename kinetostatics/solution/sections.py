@@ -56,7 +56,7 @@ class Bar:
     masses : sequence of (x, mass)
         Point masses, kg, at x from the first pin, m.
     mass : float, optional
-        Of the uniform bar, kg; by default what the link's mass leaves beside `masses`.
+        Of the uniform bar, kg; by default the link's mass less `masses`.
     second_moment, youngs_modulus : float, optional
         Second moment of area I, m4, and E, Pa; buckling and rigidity need them.
 
@@ -302,7 +302,7 @@ class WithSections:
 
 
 def _refined(turn, heights):
-    """Largest value of each height over a turn, and its crank angle: all are refined together by ever finer samples."""
+    """Largest value of each height over a turn, and its crank angle; all are refined together."""
     angle = np.union1d(turn.angle, turn.even.crank_angle)
     values, reach = heights(turn.at.moved_to(angle)), np.diff(angle).max()
     rises = np.diff(values, prepend=values[:, -1:]) > 0.0

@@ -214,8 +214,8 @@ def _linear_quantity(solution, name) -> tuple[str, Quantity]:
     bare = without_bars(solution, name)
     if known[bare].kind == GROUND:
         raise QuantityError(
-            f"shares: {bare} is a force on the frame, at places that a machine with one source alone may lack; shares "
-            f"of its reactions and shaking force tell as much: {', '.join(linear)}"
+            f"shares: {bare} is a force on the frame, at places that a machine with one source alone may lack. Use "
+            f"shares of its reactions or shaking force: {', '.join(linear)}"
         )
     if bare not in linear:
         raise QuantityError(

@@ -7,8 +7,8 @@ A roller centre moves by (s' + e, -s) along the pitch curve, seen from the cam, 
 
     (s, s' + e) / sqrt(s^2 + (s' + e)^2)
 
-so the contact force leans from the guide by the pressure angle, tan = (s' + e) / s. A flat face touches the cam at -s'
-across the guide, to the left, with a force along the guide. The cam has the radius of curvature s + s'', which must
+so the contact force is inclined to the guide by the pressure angle, tan = (s' + e) / s. A flat face touches the cam at
+-s' across the guide, to the left, with a force along the guide. The cam has the radius of curvature s + s'', which must
 stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
@@ -140,7 +140,7 @@ class RollerFollower(GuidedFollower):
     Raises
     ------
     ParameterError
-        The law is invalid, or a value is impossible; when it is solved, the roller centre comes to the foot of O.
+        The law is invalid, or a value is impossible; when it is solved, the roller centre reaches the foot of O.
 
     Notes
     -----
@@ -245,7 +245,7 @@ class FlatFollower(GuidedFollower):
     Raises
     ------
     ParameterError
-        The law is invalid, or a value is impossible; when it is solved, the face comes to O.
+        The law is invalid, or a value is impossible; when it is solved, the face reaches O.
 
     Notes
     -----

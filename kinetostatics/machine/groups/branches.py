@@ -163,7 +163,7 @@ class Branch:
         )
 
     def _first(self: Any, throws):
-        """Crank angle at which its pin stands in the direction `start`, rad."""
+        """Crank angle at which its pin is in the direction `start`, rad."""
         x, y = rotate_back(self.start, throws[self.on].polar[1])
         return math.atan2(y, x)
 

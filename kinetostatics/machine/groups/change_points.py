@@ -208,7 +208,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
 def slid(placement, on, coupler_length, guide, passage, side):
     """Reach of a coupler along the guide, rate of the coupler and its slope, divisor, and closure (kernel).
 
-    With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
+    With psi from the right normal of the guide the coupler is perpendicular to it where cos(psi/2) ("far") or
     sin(psi/2) ("near") vanishes. The divisor is a factor and the distance from the change points.
     """
     kind, facing = parse_passage(passage)

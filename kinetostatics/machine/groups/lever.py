@@ -7,8 +7,8 @@ is a product, so it keeps its digits near zero, where it divides rates and force
 Where the crank is as long as the pivot's distance, A meets the pivot. On a chosen side the lever reverses there; the
 words "open" and "crossed" carry the block to the other side of the pivot (`change_points`).
 
-The swinging cylinder is the inversion of the lever, without offset: its rod points at the pivot, about which the
-couple of the pair is taken.
+The swinging cylinder is the inversion of the lever, without offset: its rod points at the pivot, the
+reference point for the couple of the pair.
 """
 
 from dataclasses import dataclass

@@ -8,14 +8,14 @@ and ground d. The sine of the transmission angle is the root of two factors, wit
 
 C and S are quarters of squared distances of the crank ray, so a small one keeps its digits. Brackets are products of
 sums of given lengths, each rounded once: near a zero the error is that of one rounding of the crank angle. A length
-that is a root itself goes with the rest that rounding took off it. Rates and their slopes have the same factors,
+that is a root itself comes with the remainder of its rounding. Rates and their slopes have the same factors,
 
     theta' = 1/2 - (d^2 - a^2) / (2 e^2) -+ (1 -+ (b^2 - h^2) / e^2) R,    R = a d sin(psi) / (2 b h sine)
     R' = a d / (2 b h sine^3) (((d-a)^2 - (b-h)^2) C far - ((b+h)^2 - (d+a)^2) S near) / (2 b h)
 
 with the upper signs for the coupler, the lower ones for the rocker.
 
-*Elongation.* A length l that leans from a line reaches l less l (1 - cos) = l sin^2 / (1 + cos), small near a dead
+*Elongation.* A length l inclined to a line reaches l less l (1 - cos) = l sin^2 / (1 + cos), small near a dead
 centre. So the coordinate of a slider less a position loses no digits there.
 
 *Toggle.* A rocker with a slider on its pin that moves along a line through its pivot, as the ram of a toggle press. The
@@ -24,8 +24,8 @@ pivot and the inner joint on the other axis. The coupler has the length b and th
 
     b q - g + A = (+-b - g) + A - b e^2 / (+-1 + q)
 
-by the sign of q. It is used where the coupler leans little and is not much longer than the rocker. The designs of a
-batch use the same formulas, so a design may change in its last bits with its batch.
+by the sign of q. It is used where the coupler is inclined little and is not much longer than the rocker. The designs of
+a batch use the same formulas, so a design may change in its last bits with its batch.
 """
 
 from typing import Any, NamedTuple

@@ -312,7 +312,7 @@ class RockerGroup(Branch, RRRGroup):
         return {RHOMBUS: far & meeting, KITE: both & kite, PARALLEL: both, FAR: far, MEETING: meeting, NEAR: near}
 
     def beside(self, groups, throws):
-        """The group with the axis of the toggle that it is with a slider beside it, or with its passage on a rocker."""
+        """The group with the axis of its toggle if a slider is on its pin, or with its passage on a rocker."""
         throw, toggle = throws.get(self.on), ""
         if throw is not None:
             guides = [guide for other in groups if self.pin in other.hangs_on for guide in other.guides.values()]

@@ -4,7 +4,7 @@ The guide has the direction u, the left normal n and the offset e. A coupler of 
 A.n across the guide and +-sqrt((l - d)(l + d)) along it. No angle is formed, so dead centres need no special treatment
 at any inclination of the guide.
 
-Where l = r + |e| on a crank r, the coupler comes to stand across the guide. On a chosen side the slider turns back
+Where l = r + |e| on a crank r, the coupler becomes perpendicular to the guide. On a chosen side the slider turns back
 there, the words "open" and "crossed" let it run on (`change_points`).
 """
 

@@ -85,7 +85,7 @@ def resolve(motion, guide, block_load, slider_load, push):
 class YokeGroup(checks.Checked, Group):
     """Block on joint `on` in the slot of a slider on `guide`: a Scotch yoke.
 
-    The slider's joint `pin` stands where the line through `on` along the slot meets the guide.
+    The slider's joint `pin` is where the line through `on` along the slot meets the guide.
 
     Parameters
     ----------

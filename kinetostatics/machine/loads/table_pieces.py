@@ -291,7 +291,7 @@ def _roots(function, low, high):
     if not low.size:
         return low
     root = find_roots(values, low, high, 1e-13)
-    return np.where(np.isnan(root), low, root)  # an end that is a zero but for rounding
+    return np.where(np.isnan(root), low, root)  # an end that is zero within rounding
 
 
 # Rounding errors
