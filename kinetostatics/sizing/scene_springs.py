@@ -28,7 +28,7 @@ MAX_ITERATIONS, TOLERANCE = 500, 1e-13
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class BalancingSpring(HelicalSpring):
-    """A `HelicalSpring` that balances a slider, `spring_for` returns it.
+    """A `HelicalSpring` that balances a slider; `spring_for` returns it.
 
     Examples
     --------
