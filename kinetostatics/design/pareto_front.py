@@ -17,7 +17,7 @@ from .problem import scene_of
 @with_units()
 @dataclass(frozen=True, eq=False)
 class Front:
-    """Designs none of which is better in both outputs; `pareto` and `balancing.pareto` return it.
+    """Designs that no other design surpasses in both outputs; `pareto` and `balancing.pareto` return it.
 
     `ks.plots.front` draws it.
 

@@ -163,7 +163,7 @@ def in_units(table, units):
     Returns
     -------
     pandas.DataFrame
-        A new one. Units of dimensions that are not chosen stay.
+        A new one. Other units stay unchanged.
 
     Raises
     ------

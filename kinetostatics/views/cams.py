@@ -169,7 +169,7 @@ def contact_pressure(contacts, ax=None):
             ax.fill_between([], [], label=f"{name}: lift-off" if name else "lift-off", **shade)
         if "pressure" in contact.limits:
             ax.axhline(contact.limits["pressure"] / 1e6, **LIMIT_STYLE)
-    ax.set_ylim(bottom=0.0)
+    ax.set_ylim(0.0, 1.08 * ax.dataLim.ymax or 1.0)
     return _label_axes(ax, "Hertz pressure [MPa]", len(ax.get_legend_handles_labels()[1]) > 1)
 
 

@@ -1,9 +1,9 @@
 """Figures by matplotlib; none is shown, and no global setting changes.
 
-Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result.
-`solutions` is one `Solution` or a mapping of label to `Solution`; where a figure shows one machine only, a mapping gets
-a panel for each, and the result is a list of Axes. ``units={"force": "kN", "length": "mm"}`` chooses units, as of
-`in_units`. A quantity that the mechanism lacks raises `QuantityError`, a batch of designs `ParameterError`.
+Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result. `solutions`
+is one `Solution` or a mapping of label to `Solution`. Where a figure shows one machine only, a mapping gets a panel for
+each, and the result is a list of Axes. ``units={"force": "kN", "length": "mm"}`` chooses units, as of `in_units`. A
+quantity that the mechanism lacks raises `QuantityError`, a batch of designs `ParameterError`.
 """
 
 from . import (
@@ -58,7 +58,7 @@ rocking_moment = with_units(force_curves.rocking_moment)
 sections = with_units(sizing_sections.sections)
 shaking_force = with_units(curves.shaking_force)
 shares = with_units(one_panel_each(forces.shares, 7.0, 4.2, pad=22.0))
-sketch = with_units(sketches.sketch)
+sketch = with_units(one_panel_each(sketches.sketch, 6.4, 3.6))
 torque = with_units(curves.torque)
 __all__ = [
     "acceleration_error",
