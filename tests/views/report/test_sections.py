@@ -84,7 +84,9 @@ def test_one_machine_is_compared_with_nothing():
     assert tables.comparisons(alone) == []
     assert "atio" not in tables.glance(alone).note
     pytest.importorskip("bokeh")
-    assert not re.search(r"machine's name|[Rr]atio of means|data-machine=", html.page(alone).split("application/json")[0])
+    assert not re.search(
+        r"machine's name|[Rr]atio of means|data-machine=", html.page(alone).split("application/json")[0]
+    )
 
 
 def test_report_extremes_are_the_librarys():
