@@ -225,7 +225,8 @@ def draw_each_over_turn(ax, named, value, points=POINTS_PER_TURN):
 def _label_axes(ax, text, legend):
     """Label the crank angle in degrees and the value `text`, and draw a legend if asked for; returns the Axes."""
     ax.set(xlabel=FROM_X.axis, ylabel=text)
-    ax.set_xticks(np.arange(0, 361, 60))
+    ax.set_xticks(np.arange(0, 361, 90))
+    ax.set_xlim(0, 360)
     if legend:
         ax.legend(edgecolor="none", fontsize="small")
     return ax
