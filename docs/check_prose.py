@@ -12,7 +12,7 @@ from collections import deque
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CHECKED = ("README.md", "docs/**/*.md", "notebooks/*.ipynb")
+CHECKED = ("README.md", "docs/**/*.md", "notebooks/*.ipynb", "kinetostatics")
 """Trees that have to be clean."""
 MADE = {"_build", "generated"}
 DOCS_COPY = ROOT / "docs" / "notebooks"
@@ -69,6 +69,8 @@ INLINE = [
     (re.compile(r"\bhttps?://\S+"), "Link"),
 ]
 ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|etc|cf|vs|approx|eqs?|[Ff]igs?|[Nn]os?|pp|vol|al)\.$")
+NAMES = re.compile(r"\w+(\([\w, ]*\))?(, \w+(\([\w, ]*\))?)+")
+"""Line of names of attributes or methods."""
 END = re.compile(r"[.!?][\"')\]]*(?=\s+[\"'(\[]*[A-Z0-9\u0400-\u04ff]|\s*$)")
 WORD = re.compile(r"[^\W_][\w'.,/^-]*")
 
@@ -161,6 +163,7 @@ def docstring(text, first):
         stripped, indent = line.strip(), len(line) - len(line.lstrip())
         code = bool(stripped) and (code or stripped.startswith((">>>", "|")))
         head = re.match(r"[\w*][\w*, ]* : |[-=~]{3,}", stripped) or re.search(r"\S {3,}\S", stripped)
+        head = head or NAMES.fullmatch(stripped)
         if (
             not stripped
             or code

@@ -129,7 +129,7 @@ class Comparison:
     def frame(self, units=None):
         """All coefficients as a pandas DataFrame: quantity, unit, its value in each mechanism, and the ratio.
 
-        Values that are rounding, within their proven bound or beside the largest force or torque, are 0. `units` is a
+        Values within their proven bound, or within rounding of the largest force or torque, are 0. `units` is a
         dict of dimension to unit as of `in_units`.
         """
         table = self._as_frame((row.label, row.unit, *row.pair, row.ratio) for row in self.rows)

@@ -318,8 +318,8 @@ class CompiledReductions:
         memory : array (designs, rows, N)
             Buffer for the values of a block.
         found : tuple
-            Written: numbers (outputs, designs); whether the samples are too few for them; the number of angles at which
-            a design does not close; the angle nearest to a limit position, if one is near.
+            Written: numbers (outputs, designs), and whether the samples are too few for them; the number of angles at
+            which a design does not close. Last, the angle nearest to a limit position, if one is near.
         start, stop : int
         """
         step = len(memory) if self._others else max(1, stop - start)

@@ -316,8 +316,8 @@ def _require_repeating(turn, function, size):
         np.abs(second - first - growth) < GROWTH_TOLERANCE * abs(growth)
     ):
         raise ParameterError(
-            f"extremes: the function of the solution grows by {growth:.6g} in each period of {turn.period:.6g} rad, as "
-            "the angle of a link that makes full turns does, so it has no extremes; use a periodic function"
+            f"extremes: the function of the solution grows by {growth:.6g} in each period of {turn.period:.6g} rad. "
+            "It has no extremes, like the angle of a link that makes full turns; use a periodic function"
         )
 
 

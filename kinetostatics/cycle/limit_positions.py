@@ -68,7 +68,7 @@ class Turn:
     passed: np.ndarray
     extrema: dict[str, Any] = field(default_factory=dict, init=False)
     _beside_limits: dict[tuple[float, int], Any] = field(default_factory=dict, init=False)
-    """Solutions beside limit positions, by the crank angle of the position and the side."""
+    """Solutions close to limit positions, by the crank angle of the position and the side."""
 
     @classmethod
     def of(cls, solution, forces=False):

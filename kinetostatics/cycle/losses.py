@@ -7,8 +7,9 @@ loads is taken out by them or lost:
 
 (Artobolevskii, *Theory of Mechanisms and Machines*: the work of the useful resistances over that of the driving forces,
 in a period of steady motion.) The sign of the work over the whole period decides whether the drive or a load gives or
-takes power: an engine's gas force gives and its drive takes, a pump's the reverse. An idling machine has the efficiency
-0, and so has a machine in which load and drive both give, for example where friction holds a weight that is let down.
+takes power. An engine's gas force gives and its drive takes; in a pump it is the reverse. An idling machine has the
+efficiency 0, and so has a machine in which load and drive both give, for example where friction holds a weight that is
+let down.
 """
 
 import warnings

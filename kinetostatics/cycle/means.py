@@ -20,8 +20,8 @@ SPLIT_TOLERANCE = 1e-14
 WARNING_ERROR = 1e-9
 """Relative error of a mean above which a warning follows."""
 ROUNDINGS = 4
-"""Largest number of roundings of a value in a mean, besides the sum of its piece: weight, product with its width,
-sum of all pieces (rounded once), quotient by the period."""
+"""Largest number of roundings of a value in a mean, besides the sum of its piece. They are weight, product with its
+width, sum of all pieces (rounded once), quotient by the period."""
 TERM_ROUNDING = 1e-14
 """Rounding of a sum relative to its largest term."""
 ZERO_MEAN = 1e-12
@@ -45,8 +45,8 @@ def mean_absolute_torque(solution):
     Warns
     -----
     ConditionWarning
-        The torque grows without bound at a limit position, so the mean is infinite; values without a correct
-        digit do not count; or the load is too uneven for full accuracy.
+        The torque grows without bound at a limit position, so the mean is infinite. Values without a correct digit do
+        not count. Or the load is too uneven for full accuracy.
     """
     turn = closed_turn(solution, "mean torque")
     peaks = extrema(solution, "balancing_torque")

@@ -1,8 +1,8 @@
 """Functions of the crank angle as Chebyshev series on pieces between their kinks.
 
-The points are Chebyshev points of the first kind: none is at an end of a piece, so jumps there do no harm
-(Trefethen, *Approximation Theory and Approximation Practice*, chapters 2, 8 and 19). `resolved` halves pieces until the
-last coefficients are rounding, as chebfun does (Aurentz and Trefethen, *ACM Trans. Math. Softw.* 43, 2017).
+The points are Chebyshev points of the first kind. None is at an end of a piece, so jumps there do no harm (Trefethen,
+*Approximation Theory and Approximation Practice*, chapters 2, 8 and 19). `resolved` halves pieces until the last
+coefficients are rounding, as chebfun does (Aurentz and Trefethen, *ACM Trans. Math. Softw.* 43, 2017).
 """
 
 from dataclasses import dataclass

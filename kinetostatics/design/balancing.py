@@ -106,7 +106,7 @@ def partial(mechanism, ratio="overall", *, crank):
     Raises
     ------
     ParameterError
-        The mechanism is not a crank-slider or has no mass, the ratio is unknown or not from 0 to 1, the condition
+        The mechanism is not a crank-slider or has no mass, or the ratio is unknown or not from 0 to 1. The condition
         cannot be reached by a counterweight on the crank, or the counterweight breaks its limits.
 
     Examples
@@ -162,8 +162,8 @@ FLAT_TOLERANCE = 1e-12
 class _ShakingSearch:
     """Norm of shaking force and moment over unbalances in units of `scale`, the largest static moment of a link.
 
-    `weights` are of force and moment, 1/N and 1/(N m); `about` is the point of the moment, m; `size` is 2 if an
-    unbalance may be off its link's line, else 1; `turn` holds the crank angles of the norm, rad; `reference` is the
+    `weights` are of force and moment, 1/N and 1/(N m). `about` is the point of the moment, m. `size` is 2 if an
+    unbalance may be off its link's line, else 1. `turn` holds the crank angles of the norm, rad; `reference` is the
     norm without counterweights, or 1. The largest moment may not exceed `moment_limit` at crank speed 1 rad/s, N m.
     """
 
@@ -338,9 +338,9 @@ def optimal(
     ----------
     mechanism : Mechanism
     norm : "largest", "mean", "along", "across", "weighted", "largest moment" or "largest weighted"
-        Largest or mean magnitude of the shaking force; its largest component along or across the guide; largest
-        magnitude of the shaking moment; or the root mean square or largest value of the weighted force and moment, as
-        the root of the sum of their squares at each crank angle.
+        Largest or mean magnitude of the shaking force; its largest component along or across the guide. Largest
+        magnitude of the shaking moment; or root mean square or largest value of the weighted force and moment. The
+        weighted value is the root of the sum of squares.
     phase : bool
         Whether a counterweight may be off its link's line.
     weights : (force, moment)
@@ -360,8 +360,8 @@ def optimal(
     Raises
     ------
     ParameterError
-        The norm or a link is unknown, there is no counterweight, limits cannot be kept, forces are wanted along
-        and across guides that are not parallel, or a moment that no counterweight changes.
+        The norm or a link is unknown, there is no counterweight, or limits cannot be kept. Forces are required along
+        and across guides that are not parallel, or no counterweight changes the moment.
     AssemblyError
         The mechanism does not close all round the turn, with the crank angles.
 
@@ -446,9 +446,9 @@ def _weight_problem(name, weight):
 def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     """Mechanism with two counterweights on the crank that balance its rotating masses: their force and their couple.
 
-    Rotating masses are the crank's own; the part (1 - s/l) of the mass m of each coupler on a crank pin, with its
-    centre at s from the pin on the length l; and each block on a crank pin. A share of the reciprocating masses
-    (sliders and the rest of their couplers) may be balanced too, at the cost of an equal force across the guide.
+    Rotating masses are the crank and each block on a crank pin. A coupler on a crank pin adds (1 - s/l) of its mass m,
+    with its centre at s from the pin on the length l. A share of the reciprocating masses (sliders and the rest of
+    their couplers) may be balanced too, at the cost of an equal force across the guide.
 
     Parameters
     ----------
@@ -467,7 +467,7 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     Raises
     ------
     ParameterError
-        A counterweight has no plane, both have the same plane, or limits are broken; the share is not from 0 to 1; the
+        A counterweight has no plane, both have the same plane, or limits are broken. The share is not from 0 to 1. The
         mechanism has no mass, is a batch, or moves its pin at a varying distance from O.
 
     Examples
@@ -522,8 +522,8 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
 def _set_static_moment(mechanism, link, moment, weight):
     """`Balanced` with the counterweight that gives a link this static moment.
 
-    In a four-bar the coupler's vector is a sum of rocker, crank and frame vectors, so its static moment passes to
-    crank and rocker in proportion to their lengths (Berkof and Lowen 1969).
+    In a four-bar the coupler's vector is a sum of rocker, crank and frame vectors. So its static moment passes to crank
+    and rocker in proportion to their lengths (Berkof and Lowen 1969).
     """
     checks.require("balancing", _weight_problem(link, weight))
     moments = {name: complex(*pair) for name, pair in principal_points(mechanism).static_moments.items()}
@@ -561,7 +561,7 @@ def _require_balanceable(mechanism):
         pin = next(iter(mechanism.curves), "A")
         raise ParameterError(
             f"the pin {pin} of a {mechanism.name} moves at a varying distance from O with {carried.get(pin, 0.0):g} kg "
-            "on it, so no counterweight on the crank balances it; use `optimal`, or a plain crank-slider"
+            "on it, so no counterweight on the crank balances it. Use `optimal`, or a plain crank-slider"
         )
 
 

@@ -1,8 +1,8 @@
 """Contact of a roller with its cam over the turn: side, curvature, Hertz pressure, spin, life, and exceeded limits.
 
-A rolling roller turns at v / R, v the speed of its centre along the pitch curve; one way on a disk, the other way in a
-ring, so it reverses where it changes sides. The contact must drive it, J dv/dt / R^2 along the cam, against the
-friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardness of steel by AGMA 2001-D04.
+A rolling roller turns at v / R, v the speed of its centre along the pitch curve. It turns one way on a disk, the other
+way in a ring, so it reverses where it changes sides. The contact must drive it, J dv/dt / R^2 along the cam, against
+the friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardness of steel by AGMA 2001-D04.
 """
 
 from dataclasses import dataclass, field, replace
@@ -156,7 +156,7 @@ def _means(solution, function):
 
 
 def pressure_from_hardness(brinell):
-    """Hertz pressure that through-hardened steel of a Brinell hardness bears 1e7 times, Pa.
+    """Hertz pressure that through-hardened steel of a Brinell hardness withstands 1e7 times, Pa.
 
     2.22 HB + 200 MPa (AGMA 2001-D04, figure 2, grade 1), for 180 to 400 HB.
 
@@ -183,14 +183,14 @@ def pressure_from_hardness(brinell):
     value = checks.single_numbers("pressure_from_hardness", brinell=(brinell, "1", POSITIVE))["brinell"]
     if not 180.0 <= value <= 400.0:
         raise ParameterError(
-            f"pressure_from_hardness: the standard tells of 180 to 400 HB, got {value:.6g}; give the pressure itself, "
+            f"pressure_from_hardness: the standard covers 180 to 400 HB, got {value:.6g}; give the pressure itself, "
             "for case-hardened steel about 1.5e9 Pa"
         )
     return (2.22 * value + 200.0) * 1e6
 
 
 def hardness_from_pressure(pressure):
-    """Brinell hardness of steel that bears a Hertz pressure in Pa, the inverse of `pressure_from_hardness`.
+    """Brinell hardness of steel that withstands a Hertz pressure in Pa, the inverse of `pressure_from_hardness`.
 
     At least 180 HB, the lowest of the standard; extrapolated beyond 400 HB.
 
@@ -340,7 +340,7 @@ class CamContact:
 
     @property
     def hardness(self):
-        """Brinell hardness of through-hardened steel that bears the largest pressure 1e7 times (AGMA 2001-D04)."""
+        """Brinell hardness of through-hardened steel that withstands the largest pressure 1e7 times (AGMA 2001-D04)."""
         return hardness_from_pressure(self.largest_pressure.value)
 
     def _highest(self, function):

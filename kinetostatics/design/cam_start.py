@@ -66,7 +66,7 @@ class Machine:
 class Start:
     """Start of a search: machine, extreme positions of its slider (m), and bounds of the numbers that vary by path.
 
-    `first` are the paths that vary in the least squares of the torque, `weight` that of the coupler on A across the
+    `first` are the paths that vary in the least squares of the torque. `weight` is that of the coupler on A across the
     guide to its left (N), `unit` the mean torque of a plain crank-slider with that stroke (N m).
     """
 

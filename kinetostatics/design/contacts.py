@@ -2,7 +2,7 @@
 
 The contact force of a follower is positive outward: the cam is a disk inside the pitch curve. Where it is negative, a
 grooved cam carries the roller on a ring around the pitch curve, and an open cam loses contact, as a flat face does.
-Formulas are those of `cam_contact`; the relative radius of a flat face is the radius of curvature s + s'' of the cam
+Formulas are those of `cam_contact`. The relative radius of a flat face is the radius of curvature s + s'' of the cam
 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapters 7 and 12).
 """
 
@@ -158,7 +158,7 @@ class FollowerContact(CamContact):
             sharpest = self._highest(lambda at, sign=-SIDE_SIGNS[side]: sign * at.curvature)
             if sharpest.value * self.roller_radius >= 1.0:
                 raise ParameterError(
-                    f"contact: a roller of radius {self.roller_radius:.6g} m undercuts the {side}: the pitch curve has "
+                    f"contact: a roller of radius {self.roller_radius:.6g} m undercuts the {side}. The pitch curve has "
                     f"a radius of curvature of {1.0 / sharpest.value:.6g} m at crank angle "
                     f"{np.degrees(sharpest.angle):.6g} deg; take a smaller roller, or enlarge the cam"
                 )
@@ -284,7 +284,7 @@ def contact(
 
 
 def _group_of(mechanism, follower):
-    """Group whose contact is wanted: of that link, else the roller on a fixed cam, else the only follower."""
+    """Group of the contact: that of the link, else the roller on a fixed cam, else the only follower."""
     groups = {group.led[0].link: group for group in mechanism.groups if group.led}
     if not groups:
         raise ParameterError(

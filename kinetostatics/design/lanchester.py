@@ -117,8 +117,8 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
     Raises
     ------
     ParameterError
-        Neither a scene nor a solution, a batch of designs, or one that does not close all round; a harmonic that is
-        not positive, given twice, or a fraction that the motion does not have; a counterweight beyond its limits.
+        Neither a scene nor a solution, a batch of designs, or one that does not close all round. A harmonic that is not
+        positive, given twice, or a fraction that the motion does not have; a counterweight beyond its limits.
 
     Examples
     --------

@@ -1,7 +1,7 @@
 """Four-bars: their bars, Grashof's class with the crank angles of assembly, and swing and transmission of the rocker.
 
-The chain unit of the Belarusian study measures its crank angle from +y, clockwise, and the rocker angle from its
-start; `chain_unit` builds it and `chain_unit_angle` converts its crank angle into the library's. Angles are in rad.
+The chain unit of the Belarusian study measures its crank angle from +y, clockwise, and the rocker angle from its start.
+`chain_unit` builds it and `chain_unit_angle` converts its crank angle into the library's. Angles are in rad.
 """
 
 from collections.abc import Mapping

@@ -295,7 +295,7 @@ def _failure_text(problem, goal, limits, best, count):
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
         numbers = _numbers_text(problem, best.values)
-        obstacle = f"the one with {numbers} runs, but wanted outputs have no value"
+        obstacle = f"the one with {numbers} runs, but required outputs have no value"
         whose = ""
         try:
             for part in problem.parts.values():

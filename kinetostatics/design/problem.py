@@ -111,7 +111,7 @@ class Problem:
     vary : mapping of path to (low, high)
         SI numbers, or texts with units.
     quantities : sequence of str
-    reference : Scene or alike, optional
+    reference : Scene or similar, optional
         Reference of ratios; it runs at the design's speed, with its other numbers constant.
     angles : int
         Crank angles evenly over the period.
@@ -318,7 +318,7 @@ def true_value(output, scene, angles=5760):
         ((found,),), ((rough,),) = PiecewiseTurns.of(scene, (plain,), START_ANGLES * turns).estimated((plain,))
         if rough:
             raise DesignError(
-                f"{plain} of {scene.mechanism.name} is not resolved even by the finest pieces of the turn; if a load "
+                f"{plain} of {scene.mechanism.name} is not resolved even by the finest pieces of the turn. If a load "
                 "jumps, let it rise over a degree, or declare the place by kinks(motion)"
             )
         return float(found)

@@ -131,5 +131,5 @@ def _collocate(rest, width, share, value):
 def _lift_off_text(angle):
     return (
         f"the roller would lift off near crank angle {np.degrees(angle) % 360:.6g} deg: no motion of the follower "
-        "balances and stays in contact; preload the spring more, or make the follower lighter or its travel shorter"
+        "balances and stays in contact. Preload the spring more, or make the follower lighter or its travel shorter"
     )

@@ -1,6 +1,6 @@
 """A spring-loaded follower on a cam on the crank that evens out the torque of any machine at its design speed.
 
-The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T): the cam relaxes it as E
+The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T). The cam relaxes it as E
 rises, so the motor gives only the mean torque. The equation of `spring_follower` includes the follower's own inertia,
 so no iteration is needed.
 """
@@ -299,7 +299,7 @@ def torque_balancing_cam(
     if least <= 0.0:
         raise ParameterError(
             f"{OWNER}: a spring of {stiffness:.6g} N/m stores more than the {swing:.6g} J of the machine on a travel "
-            f"of {travel:.6g} m without preload; choose less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
+            f"of {travel:.6g} m without preload. Choose less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
             f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
         )
     level = peak + 0.5 * stiffness * least * least
@@ -309,7 +309,7 @@ def torque_balancing_cam(
     if reserve <= 1.0:  # (k x)^2 must exceed 4 m omega^2 E'' at minima of E
         raise ParameterError(
             f"{OWNER}: the follower would lift off at {np.degrees(low) % 360:.6g} deg, where the spring pulls with "
-            f"{reserve:.4g} times the force 2 omega sqrt(m E'') that contact needs; make the travel shorter than "
+            f"{reserve:.4g} times the force 2 omega sqrt(m E'') that contact needs. Make the travel shorter than "
             f"{travel * reserve:.6g} m, or the follower lighter than {values['mass'] * reserve**2:.6g} kg"
         )
     stretch = spring_follower.spring_stretch(energy, level, moving, stiffness)
@@ -374,7 +374,7 @@ def _energy_swing(torque, energy):
         if np.max(beside) > JUMP_TOLERANCE * size:
             raise ParameterError(
                 f"{OWNER}: the torque jumps across its mean of {mean:.6g} N m at {np.degrees(angle):.6g} deg, where "
-                "the follower would have to reverse at once; spread the switching of the load over some degrees"
+                "the follower would have to reverse at once. Spread the switching of the load over some degrees"
             )
     return float(np.ptp(values)), float(np.max(values)), turns[values < np.roll(values, 1)].tolist()
 

@@ -269,7 +269,7 @@ def _require_possible(problem, start):
     if not (shortest < high and longest > low):
         raise DesignError(
             f"torque-free cam: a coupler of {shortest:.6g} to {longest:.6g} m cannot make the stroke from {low:.6g} m "
-            f"to {high:.6g} m: its length must lie between these ends, or A would pass O"
+            f"to {high:.6g} m. Its length must lie between these ends, or A would pass O"
         )
 
 
@@ -297,9 +297,8 @@ def _advice(start, problem, reference, values):
     if helped or not np.isfinite(limit):
         return ""
     return (
-        f"; under weight a symmetric cam reaches a ratio of mean torques of about {limit:.3g} at most (that of the cam "
-        "nearest to the limits; it varies by some per cent with the cam): give sine terms, coupler_spring or "
-        "counterweight"
+        f"; under weight a symmetric cam reaches a ratio of mean torques of about {limit:.3g} at most, within some per "
+        "cent. Give sine terms, coupler_spring or counterweight"
     )
 
 
@@ -322,9 +321,9 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     Returns
     -------
     pandas.DataFrame
-        Rows "symmetric", "sine terms", "coupler spring" (the slider and the guide take its couple) and "counterweight"
-        (with sine terms; O takes its centrifugal force), with the outputs of their reports; "bound" is that of the
-        symmetric cam.
+        Rows "symmetric", "sine terms", "coupler spring" and "counterweight" (with sine terms), with the outputs of
+        their reports. The slider and the guide take the couple of the coupler spring, O the centrifugal force of the
+        counterweight. "bound" is that of the symmetric cam.
 
     Raises
     ------

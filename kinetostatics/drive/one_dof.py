@@ -178,7 +178,7 @@ class DrivenMachine:
         if slow.size != fast.size or np.any(np.abs(slow - fast) > ANGLE_TOLERANCE):
             raise DriveError(
                 f"{self.scene.mechanism.name}: a load declares `kinks` that move with the crank speed, so a motion "
-                "cannot locate them; leave `kinks` out to have the function sampled, or let them depend on the "
+                "cannot locate them. Leave `kinks` out to have the function sampled, or let them depend on the "
                 "crank angle alone"
             )
 
@@ -454,9 +454,9 @@ class DrivenMachine:
             worst = int(np.argmax(growth - inertia))
             raise DriveError(
                 f"{self.scene.mechanism.name}: friction jams at crank angle "
-                f"{math.degrees(angle[worst] % self.period):.6g} deg and {speed[worst]:.6g} rad/s: each rad/s2 of "
+                f"{math.degrees(angle[worst] % self.period):.6g} deg and {speed[worst]:.6g} rad/s. Each rad/s2 of "
                 f"deceleration adds {growth[worst]:.6g} N m of friction torque, but frees only {inertia[worst]:.6g} N "
-                "m of inertia torque, so no acceleration balances them; give a flywheel of "
+                "m of inertia torque, so no acceleration balances them. Give a flywheel of "
                 f"{growth[worst] - inertia[worst]:.3g} kg m2 or more in addition, or lower coefficients of friction",
                 crank_angle=float(angle[worst]),
             )

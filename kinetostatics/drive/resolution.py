@@ -135,7 +135,7 @@ def _require_resolved(driven, pieces, torque):
         angle = float(pieces.edges[worst : worst + 2].mean())
         raise DriveError(
             f"{driven.scene.mechanism.name}: the torque of the loads cannot be resolved near crank angle "
-            f"{math.degrees(angle):.6g} deg, where it reaches {np.abs(torque[worst]).max():.3g} N m: it grows without "
+            f"{math.degrees(angle):.6g} deg, where it reaches {np.abs(torque[worst]).max():.3g} N m. It grows without "
             "bound there, or changes too fast; give loads that stay finite",
             crank_angle=angle,
         )
@@ -148,7 +148,7 @@ def require_inertia(driven, pieces):
     if not -least > MIN_INERTIA_RATIO * inertia.max():
         raise DriveError(
             f"{driven.scene.mechanism.name}: all inertia vanishes at crank angle {math.degrees(angle):.6g} deg "
-            f"({max(-least, 0.0):.3g} kg m2, {inertia.max():.3g} at most), so there is no speed there; give a "
+            f"({max(-least, 0.0):.3g} kg m2, {inertia.max():.3g} at most), so there is no speed there. Give a "
             "flywheel, or the crank or the rotor of the motor its inertia",
             crank_angle=angle,
         )

@@ -119,7 +119,7 @@ def find_flywheel(wanted, running_with, unit):
             break
         low, size = size, 2.0 * size
     if high is None:
-        running_with(size)  # says why the machine does not run
+        running_with(size)  # raises an error with the reason
         raise DriveError(f"flywheel: even {size:.3g} kg m2 do not bring the fluctuation to {wanted:g}")
     while not math.isfinite(excess(low)):  # too light to run at all
         if high < MIN_FLYWHEEL_RATIO * unit or high - low <= INERTIA_TOLERANCE * high:

@@ -65,10 +65,10 @@ def settle_from_above(driven, pieces, start):
         if not march.turn(direction):
             missing = abs(driven.torque_at_rest(march.inside)[0])
             raise DriveError(
-                f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running: from "
+                f"{driven.scene.mechanism.name}: the motor is too weak, so there is no periodic running. From "
                 f"{2.0 * abs(start):.6g} rad/s, the machine comes to a standstill at crank angle "
                 f"{math.degrees(march.inside):.6g} deg in turn {turns}, where {missing:.6g} N m are missing at the "
-                "crank; give a larger flywheel or a stronger motor",
+                "crank. Give a larger flywheel or a stronger motor",
                 missing,
                 march.inside,
             )
@@ -89,7 +89,7 @@ def _remedy(share, inertia):
     if share < MIN_GROWTH:
         return (
             f"motor and loads stabilise the speed by only {share:.1e} of the kinetic energy per turn, for an inertia "
-            f"of {inertia:.6g} kg m2 at the crank; give a stronger motor, or less inertia"
+            f"of {inertia:.6g} kg m2 at the crank. Give a stronger motor, or less inertia"
         )
     if share > MAX_GROWTH:
         return (
@@ -138,7 +138,7 @@ def operating_speed(driven):
     if spare[-1] > 0.0:
         raise DriveError(
             f"{name}: the machine runs away: at {speed[-1]:.6g} rad/s, the highest motor speed of the search, "
-            f"{spare[-1]:.6g} N m are left over at its shaft; give more load, a motor that brakes beyond its speed"
+            f"{spare[-1]:.6g} N m are left over at its shaft. Give more load, a motor that brakes beyond its speed"
             f"{', more rows to its table' * math.isfinite(motor.limits[1])}, or another transmission"
         )
     best = int(np.argmax(spare))
@@ -148,9 +148,9 @@ def operating_speed(driven):
     if drives.any():
         remedy = f"{math.ceil(1e3 * np.min(load[drives] / torque[drives])) / 1e3:.6g} times as strong "
     raise DriveError(
-        f"{name}: the motor is too weak, so there is no periodic running: the loads take {load[best]:.6g} N m at its "
-        f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s); "
-        f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank; give a motor "
+        f"{name}: the motor is too weak, so there is no periodic running. The loads take {load[best]:.6g} N m at its "
+        f"shaft in the mean, where it gives {motor.torque(speed[best]):.6g} N m at most (at {speed[best]:.6g} rad/s). "
+        f"{-spare[best]:.6g} N m are missing, {missing:.6g} N m at the crank. Give a motor "
         f"{remedy}or another transmission",
         missing,
     )

@@ -45,7 +45,7 @@ PLACES = np.array([-1.0, -0.5, 0.0, 0.5])
 class Stretch(NamedTuple):
     """Pieces of a motion in order: columns of series over a place from -1 to 1 that rises with time.
 
-    `root` is 1 for a piece that starts at a standstill, -1 for one that ends there, else 0: the speed is that of its
+    `root` is 1 for a piece that starts at a standstill, -1 for one that ends there, else 0. The speed is that of its
     series times (1 + root place) / 2.
     """
 
@@ -123,7 +123,7 @@ def sense_from_rest(driven, angle):
         raise DriveError(
             f"{driven.scene.mechanism.name}: at rest at crank angle {math.degrees(angle):.6g} deg it may start either "
             f"way: {forward:.6g} N m drive it on counter-clockwise, {backward:.6g} N m drive it on "
-            "clockwise; give a small from_speed in the wanted sense",
+            "clockwise. Give a small from_speed in the wanted sense",
             crank_angle=angle,
         )
     return 1.0 if forward > 0.0 else -1.0 if backward < 0.0 else 0.0

@@ -198,7 +198,7 @@ def _require_standstill(driven, angle, speed):
     if taken[-1] <= ENERGY_TOLERANCE * np.abs(between).sum() and taken.max() < (1.0 - ENERGY_TOLERANCE) * motion:
         raise DriveError(
             f"{name}: never comes to a standstill: of {motion:.6g} J kinetic energy the loads take "
-            f"{max(taken.max(), 0.0):.6g} J at most, and return all of it in a turn; give a time as until, "
+            f"{max(taken.max(), 0.0):.6g} J at most, and return all of it in a turn. Give a time as until, "
             "or a load that resists"
         )
 
@@ -220,9 +220,9 @@ def _start_error(driven, angle, what):
         remedies.append(f"another crank angle, {math.degrees(easy):.6g} deg, from which that torque completes the turn")
     remedies.append("a clutch that lets the motor and its flywheel run up before")
     return DriveError(
-        f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads ask {here:.6g} "
-        f"N m at rest{rubbing}, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing; over the turn the "
-        f"loads ask up to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: "
+        f"{driven.scene.mechanism.name}: {what}: at crank angle {math.degrees(angle):.6g} deg the loads take "
+        f"{here:.6g} N m at rest{rubbing}, the motor gives {rest:.6g} N m, {missing:.6g} N m are missing. Over the "
+        f"turn the loads take up to {asked[most]:.6g} N m (at {math.degrees(places[most]):.6g} deg). What helps: "
         f"{', '.join(remedies)}",
         missing,
         angle,

@@ -1,6 +1,6 @@
 """Algebraic simplification of recorded arithmetic, and fused multiply-add (FMA).
 
-No FMA for a b - c d when both products have the same structure, as for twin groups: for equal inputs the result must be
+No FMA for a b - c d when both products have the same structure, as for twin groups. For equal inputs the result must be
 exactly 0, but FMA would return the rounding error of a b. Factors and terms fixed by the design do not count as
 structure. Each decision depends only on the nodes below a sum, so a result has the same bits whatever else is computed.
 """

@@ -16,7 +16,7 @@ from .formats import format_number
 WIDTH = 80
 """Number of characters in a line of text."""
 NOTE = (
-    "A prime is a derivative by the crank angle phi: velocities are first derivatives times the crank speed omega, "
+    "A prime is a derivative by the crank angle phi. Velocities are first derivatives times the crank speed omega, "
     "accelerations second ones times omega squared, and first ones times the crank acceleration alpha. Moments on a "
     "link are about its reference joint. Values stand to 6 digits, rounding as 0."
 )

@@ -135,9 +135,9 @@ class Names:
         """Name a number and return it, or an equivalent node.
 
         A number that already has a name of the mechanism gets a second one only with `again`. The recorder moves the
-        sign of a negated number into sums, where its name would be lost: the returned node keeps the name if `turned`
-        is "onward", formulas use it also for earlier uses if "everywhere"; "within" names the number itself. A number
-        that is always zero is named only if `turned` is "always", like results.
+        sign of a negated number into sums, where its name would be lost. With `turned` "onward" the returned node keeps
+        the name, with "everywhere" formulas use it also for earlier uses, and "within" names the number itself. A
+        number that is always zero is named only if `turned` is "always", like results.
         """
         node = node_of(value)
         if node is None or (self.has_own_name(node) and (not again or self.of[node].symbol == symbol)):

@@ -1,7 +1,8 @@
 """Lines of a calculation: which recorded numbers have their own formula, their values and units.
 
-A formula ends at numbers named by the mechanism or by a kernel's `TERMS`; at another line of a kernel if it is used
-more than once or the formula would be too long. So every number in a formula is given or appears in an earlier line.
+A formula ends at numbers named by the mechanism or by a kernel's `TERMS`. It also ends at another line of a kernel if
+it is used more than once or the formula would be too long. So every number in a formula is given or appears in an
+earlier line.
 """
 
 import math

@@ -46,9 +46,9 @@ def crank_slider(
     guide : Guide
         Replaces `guide_angle` and `guide_offset`; from ``Guide.through(W1, W2)``, for example.
     assembly : +1, -1, "open" or "crossed"
-        +1: slider ahead of A along the guide; -1: behind it. "open" starts as +1 and "crossed" as -1, in the half turn
-        behind the guide's right normal; both pass change points, for example where coupler and crank are equally long
-        and the guide runs through O. Without change points they keep that side.
+        Slider ahead of A along the guide (+1) or behind it (-1). "open" starts as +1 and "crossed" as -1, in the half
+        turn behind the guide's right normal. Both pass change points, for example where coupler and crank are equally
+        long and the guide runs through O. Without change points they keep that side.
     crank, coupler, slider : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -172,10 +172,10 @@ def four_bar(
     rocker_pivot : (x, y)
         Fixed pivot O2 of the rocker, m.
     assembly : +1, -1, "open" or "crossed"
-        +1: B to the left of the direction from A to O2; -1: to the right. "open" starts as +1 and "crossed" as -1, in
-        the half turn behind the direction O -> O2. Both pass change points as inertia carries the links, so a
-        parallelogram stays a parallelogram; without change points they keep that side. Lengths equal within 8 ulp of
-        the longest make a change point. `Mechanism.turns` is the number of turns after which the branch closes.
+        B to the left of the direction from A to O2 (+1) or to the right (-1). In the half turn behind the
+        direction O -> O2 "open" starts as +1 and "crossed" as -1. Both pass change points as inertia carries the links,
+        so a parallelogram stays a parallelogram; without change points they keep that side. Lengths equal within 8 ulp
+        of the longest make a change point. `Mechanism.turns` is the number of turns after which the branch closes.
     crank, coupler, rocker : Link
         Mass properties; a link left out has no mass and costs nothing.
 
@@ -211,10 +211,10 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(),
     offset : float or array
         Distance of the slot's axis to the left of the pivot, m.
     assembly : +1, -1, "open" or "crossed"
-        +1: the slot points to the block; -1: away from it. "open" starts as +1 and "crossed" as -1, in the half turn
-        behind the direction O -> O2; both pass change points. With a crank as long as the distance of the pivot the
-        block passes the pivot, the lever turns half as fast as the crank, and the motion closes after two turns.
-        Without change points they keep that side.
+        The slot points to the block (+1) or away from it (-1). "open" starts as +1 and "crossed" as -1, in the half
+        turn behind the direction O -> O2. Both pass change points. If the crank is as long as the distance of the
+        pivot, the block passes the pivot. The lever then turns half as fast as the crank, and the motion closes after
+        two turns. Without change points they keep that side.
     crank, lever, block : Link
         Mass properties; a link left out has no mass and costs nothing.
 

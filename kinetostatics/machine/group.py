@@ -10,10 +10,15 @@ in a `Declaration`, named without the label; `Group` adds the label and makes th
 
     links, references, joints, bars, guides, slots, led, pairs, outputs, motions, contacts, lengths
 
-A table that follows another rule is its own property, with labelled names. Other lists are `hangs_on`, the joints that
-the group is attached to; `knots`, where the law of a cam bends or jumps; `curves`, joints on a curve, with its name in
-drawings; `rollers`, radii by joint; `outlines`, curves (2, K) fixed to links, in their axes; `dimensions`, the lengths
-and angles of a drawing (`machine.dimensions`). Reactions and forces with their units, `outputs`, follow from `pairs`.
+A table that follows another rule is its own property, with labelled names. Reactions and forces with their units,
+`outputs`, follow from `pairs`. Other lists are
+
+    hangs_on     joints that the group is attached to
+    knots        crank angles at which the law of a cam bends or jumps
+    curves       joints on a curve, with its name in drawings
+    rollers      radii by joint
+    outlines     curves (2, K) fixed to links, in their axes
+    dimensions   lengths and angles of a drawing (`machine.dimensions`)
 
 Kernels, without branches on values
 -----------------------------------
@@ -32,19 +37,19 @@ and optionally
     sliding(name, placement)          direction and rate of a sliding pair: a `Slide`
     relative_radius(name, placement, side)  radius of the relative curvature of a contact, by the sign of its force
 
-*Fields.* Lengths, a `Guide` or a pivot, an assembly of +1 or -1, the links; ``on`` and ``pin``, names of joints;
-``label``, the suffix of link and force names where a mechanism has two groups of a kind; ``plane``, its position along
-the crankshaft, or None (`machine.planes`), by the rule `PLANE`. ``PATHS`` renames fields in paths
+*Fields.* Lengths, a `Guide` or a pivot, an assembly of +1 or -1, the links, and the names of joints ``on`` and ``pin``.
+``label`` is the suffix of link and force names where a mechanism has two groups of a kind. ``plane`` is its position
+along the crankshaft, or None (`machine.planes`), by the rule `PLANE`. ``PATHS`` renames fields in paths
 such as "coupler_length2"; "" leaves a name out. A field ``cam`` holds a curve with ``polar(angle, ray) -> r, r',
 r''``, which need not be arithmetic: engines tabulate it. Lengths may be arrays (designs, 1): write kernels with
 ``+ - * /`` and `numbers.arithmetic`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers and
-on enclosures. ``None`` stands for a zero that costs nothing (`numbers.planar` adds it).
+on enclosures. ``None`` is a zero that costs no time (`numbers.planar` adds it).
 
 *place* reads ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each
-(x, y). `enter` adds each joint of `joints`, a `LinkMotion` for each link (reference joint, unit vector, d theta / d phi
-and its slope, None: it never turns), for each slider its coordinate along its guide with both derivatives, and the
-motion that `resolve` needs again. ``placement.courses`` takes a `Course` for a joint whose motion is known without
-the rounding of its position.
+(x, y). `enter` adds each joint of `joints` and a `LinkMotion` for each link (reference joint, unit vector, d theta / d
+phi and its slope; None: it never turns). For each slider it adds its coordinate along its guide with both derivatives,
+and it keeps the motion that `resolve` needs again. ``placement.courses`` takes a `Course` for a joint whose motion is
+known without the rounding of its position.
 
 *resolve* is a pure function. ``loads`` maps each link to the wrench on it about its reference joint: inertia, weight
 and the demands of outer groups. ``along`` maps each slider to the applied force along its guide, kept separate because
@@ -137,8 +142,8 @@ class Output(NamedTuple):
 class Resolved(NamedTuple):
     """Reactions (vectors) and scalars by name, and the wrenches that other links must supply.
 
-    `demands` maps a joint to the force and couple through it, a link to a wrench about its reference joint; for a
-    whole mechanism, the first link of a group to the wrench on the crank about O.
+    `demands` maps a joint to the force and couple through it, a link to a wrench about its reference joint. For a whole
+    mechanism, it maps the first link of a group to the wrench on the crank about O.
     """
 
     reactions: dict[str, Any]

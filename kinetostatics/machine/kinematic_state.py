@@ -82,9 +82,9 @@ UNKNOWN_COURSE = Course()
 class Placement:
     """Mechanism at its crank angles, in tables that the groups fill from the crank outwards.
 
-    `ray` is the direction of the crank. `joints` and `links` are by name; `travels` holds coordinates along guides with
-    kinematic coefficients by slider, `courses` a `Course` by joint if known, `details` the motion that a group
-    needs again, by its first link.
+    `ray` is the direction of the crank. `joints` and `links` are by name, `travels` by slider: coordinates along guides
+    with kinematic coefficients. `courses` is a `Course` by joint if known, `details` the motion that a group needs
+    again, by its first link.
     """
 
     angle: Any
@@ -120,7 +120,7 @@ def place(group, placement):
     except KeyError as error:
         hung = ", ".join(map(repr, group.hangs_on)) or "no joint"
         raise ParameterError(
-            f"{owner} is attached to {hung}, but its place asks for {error}; it finds the joints and links of earlier "
+            f"{owner} is attached to {hung}, but its place uses {error}. It finds the joints and links of earlier "
             "parts of the chain, and its own"
         ) from error
     problems = [
@@ -196,7 +196,7 @@ def sense_of(speed, acceleration):
 
 
 def has_no_sense(scene):
-    """Where a crank stands and its sense of rotation is unknown: an array of bool."""
+    """Where a crank is at rest and its sense of rotation is unknown: an array of bool."""
     if scene.sense is not None:
         return np.False_
     return np.logical_and(where_zero(scene.crank_speed), where_zero(scene.crank_acceleration))

@@ -91,10 +91,10 @@ class Link(checks.Checked):
     mass : float or array
         kg; an array of shape (designs, 1) makes a batch.
     centre : (along, across) or float
-        Mass centre in m from the link's reference joint (O for the crank, A for block and coupler, B for the slider,
-        O2 for the rocker). `along` runs along the crank ray for crank and block, A -> B for the coupler, O2 -> B for
-        the rocker, the guide direction for the slider; `across` a quarter turn counter-clockwise from it. A number
-        means (number, 0). Levers, rods and others: see the group that adds them.
+        Mass centre in m from the link's reference joint (O for the crank, A for block and coupler, B for the slider, O2
+        for the rocker). `along` runs along the crank ray for crank and block, A -> B for the coupler, O2 -> B for the
+        rocker, the guide direction for the slider. `across` is a quarter turn counter-clockwise from it. A number means
+        (number, 0). Levers, rods and others: see the group that adds them.
     inertia : float or array
         Moment of inertia about the mass centre, kg m2.
 
@@ -298,8 +298,9 @@ class Meshing(NamedTuple):
 
 
 class Slide(NamedTuple):
-    """Direction of a straight pair (None: +x), d s / d phi of the sliding link along it, and the moment of a unit force
-    along it about the reference joint of the other link (None: zero).
+    """Direction of a straight pair (None: +x), rate d s / d phi of the sliding link, moment of a unit force along it.
+
+    The moment is about the reference joint of the other link (None: zero).
     """
 
     direction: Any
@@ -324,8 +325,9 @@ class Slot(NamedTuple):
 class CamDriven(NamedTuple):
     """Link with one freedom, given by the curve in `cam`: the coordinate of its joint if it slides, else its angle.
 
-    The angle counts from the direction to O, clockwise for an assembly of +1. The curve is fixed to the link `body` and
-    gives `force` on the joint, a roller's centre, to the left normal of the curve; on a `flat` face across the link.
+    The angle counts from the direction to O, clockwise for an assembly of +1. The curve is fixed to the link `body`.
+    `force` acts on the joint, a roller's centre, along the left normal of the curve, or on a `flat` face across the
+    link.
     """
 
     link: str

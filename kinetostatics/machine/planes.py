@@ -54,5 +54,5 @@ def plane_problems(mechanism):
             what = next(iter(group.links), getattr(group, "name", kind))
             yield (
                 f"{kind}: {what} has plane {checks.shown(values[0])} m, but the part that carries it has plane "
-                f"{checks.shown(other[0])} m; give the plane once, to the pin of the crank or to the group on it"
+                f"{checks.shown(other[0])} m. Give the plane once, to the pin of the crank or to the group on it"
             )

@@ -25,7 +25,7 @@ OTHER_UNITS = {8333.0: ("kg mm2", 1e-6), 30.0: ("kg cm2", 1e-4)}
 MAX_LENGTH = 100.0
 """Largest plausible length of a link, m."""
 MAX_LENGTH_RATIO = 2000.0
-"""Largest plausible length of the longest link over the shortest: millimetres beside metres give more."""
+"""Largest plausible length of the longest link over the shortest: millimetres mixed with metres give more."""
 MAX_PIN_SPEED = 60.0
 """Largest plausible speed of a crank's pin, m/s: racing engines reach 50."""
 MIN_MASS = 1e-75
@@ -33,8 +33,8 @@ MIN_MASS = 1e-75
 MAX_PEAK_DISTANCE = np.radians(60.0)
 """Distance of the largest force of a table on a slider from a dead centre beyond which its zero may be missing, rad."""
 PEAK_SHARE, MAX_PEAK_WIDTH, MAX_SUCTION = 0.99, np.radians(90.0), 0.2
-"""Of an indicator diagram: share of the largest force from which rows belong to its peak, largest width of the peak at
-half its height, rad, and largest share of forces of the other sign."""
+"""Limits of an indicator diagram, relative to its largest force: least force of its peak, largest force of the other
+sign. `MAX_PEAK_WIDTH` is the largest width of the peak at half its height, rad."""
 RATE_STEP = np.radians(5.0)
 RATE_ANGLES = 1e-3 + RATE_STEP * np.arange(73)
 """Crank angles between which the dead centres of a slider are expected, rad, and their step."""
@@ -114,9 +114,9 @@ def _surge_hints(mechanism, spring, crank_speed):
     worst = np.unravel_index(np.argmin(ratio), ratio.shape)
     if ratio[worst] < surge.MIN_RATIO:
         yield (
-            f"{spring.title}: its surge ratio is {ratio[worst]:.3g}, below {surge.MIN_RATIO:g}: with "
+            f"{spring.title}: its surge ratio is {ratio[worst]:.3g}, below {surge.MIN_RATIO:g}. With "
             f"{mass[worst]:.6g} kg it swings between its ends at {natural[worst]:.4g} rad/s, and harmonic {order:g} of "
-            f"the slider, the highest that counts, drives it at {driven[worst]:.4g} rad/s; waves in the spring, which "
+            f"the slider, the highest that counts, drives it at {driven[worst]:.4g} rad/s. Waves in the spring, which "
             f"its `mass` leaves out, change the stiffness of its end by {surge.wave_percentage(ratio[worst])}"
         )
 
@@ -137,7 +137,7 @@ def table_hints(motion):
         elif table is not None and checks.has_known_values(speed) and np.all(speed * table.sense < 0.0):
             yield (
                 f"{load.title}: its table from {table.zero} has sense={table.sense:+d}, but the crank turns at "
-                f"{_most(speed):.6g} rad/s, so it is read backwards; for degrees after {table.zero} in the sense of "
+                f"{_most(speed):.6g} rad/s, so it is read backwards. For degrees after {table.zero} in the sense of "
                 f"rotation give sense={-table.sense:+d}"
             )
 
@@ -166,7 +166,7 @@ def _peak_hints(motion, load, table):
         yield (
             f"{load.title}: the largest value of its table, {table.largest:.6g} N at {np.degrees(peaks[0]):.4g} deg, "
             f"is {np.degrees(distance[far[0]]):.4g} deg from the dead centres of {load.on!r}, TDC at {top:.4g} deg and "
-            f'BDC at {bottom:.4g} deg; is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
+            f'BDC at {bottom:.4g} deg. Is its angle 0 at a dead centre? Give zero="TDC" (or "BDC"), or zero=0.0 if it '
             "is the crank angle from +x"
         )
 
@@ -191,7 +191,7 @@ def load_hints(mechanism, loads):
         place = f"({', '.join(map(repr, other))})" if isinstance(other, tuple) else repr(other)
         yield (
             f"{load.title}: it acts along the {slot.link} on {slot.joint!r}, a joint of the "
-            f"{mechanism.joints[slot.joint].link}, so the {slot.rod} does not carry it; for the pressure in the "
+            f"{mechanism.joints[slot.joint].link}, so the {slot.rod} does not carry it. For the pressure in the "
             f'{slot.link} give a place on the {slot.rod}, between=(("{slot.rod}", 0.0, 0.0), {place})'
         )
 
@@ -210,10 +210,14 @@ def loads_beside_rods(mechanism, loads):
 def compared_sizes(mechanism):
     """Numbers that the compiled plausibility test compares.
 
-    In order: all lengths together; the lengths whose shortest one counts; the bars; pairs of inertia and mass; triples
-    of inertia, mass and bar length; pairs of a bar's length and its distance from the arm of its inner joint. The
-    mechanism has no hints if no bar is as long as its arm, the longest length is neither huge nor huge relative to the
-    shortest, and no inertia is small relative to that bar, or large.
+    In order:
+
+    - all lengths together; the lengths whose shortest one counts; the bars
+    - pairs of inertia and mass; triples of inertia, mass and bar length
+    - pairs of a bar's length and its distance from the arm of its inner joint
+
+    There are no hints if no bar is as long as its arm, the longest length is not huge, and no inertia is small or large
+    relative to its bar.
     """
     reaches = [reach for part in mechanism.parts for reach in part.reaches]
     bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
@@ -256,7 +260,7 @@ def _on_arms(mechanism):
 def _inertia(bar, link, crank):
     """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass.
 
-    A link that goes on beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
+    A link that extends beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
     """
     if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None

@@ -1,8 +1,8 @@
 """Places where a machine and its frame push each other: pairs of links with the frame, loads, and the motor.
 
-A group declares its pairs, a load by `rests_on_frame` that the frame takes a force or couple of it. A pair is called as
-its reaction, a load as in paths of parameters, where all loads of its kind count ("spring", "spring2"), and the torque
-that keeps the motion "motor".
+A group declares its pairs, a load by `rests_on_frame` that the frame takes a force or couple of it. A pair has the name
+of its reaction, a load its name in parameter paths, where all loads of its kind count ("spring", "spring2"). The torque
+that keeps the motion is "motor".
 """
 
 from collections import Counter

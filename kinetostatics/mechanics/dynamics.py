@@ -16,8 +16,8 @@ away too h = 2 w c / (w + |c|):
     w - h = w (w - c + |c| - c) / (w + |c|),    c - h = c (|c| - w) / (w + |c|)
 
 These keep all digits of w - c, and no term exceeds three times inertia and spring force. The force of a stiffening
-spring, c = k + q e^2, counts each rounding of e three times. If e, or its opposite, is a constant length l and a small
-part p, the force is that of a constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
+spring, c = k + q e^2, counts each rounding of e three times. Let e, or its opposite, be a constant length l and a small
+part p. The force is then that of a constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
 """
 
 import warnings
@@ -92,7 +92,7 @@ class Dynamics(Motion):
                 if np.any(lost > MAX_POWER_ERROR * scale):
                     warnings.warn(
                         f"{self.mechanism.name}: the balancing torque from the forces differs from that of the power "
-                        f"balance by up to {np.nanmax(lost):.3g} N m, for terms of {np.nanmax(scale):.3g} N m; a group "
+                        f"balance by up to {np.nanmax(lost):.3g} N m, for terms of {np.nanmax(scale):.3g} N m. A group "
                         "of your own places its links or resolves its forces wrongly, see ks.check(group)",
                         stacklevel=1,
                     )
@@ -291,7 +291,7 @@ class Dynamics(Motion):
         return self.as_vector(shaft.rocking_moment(self))
 
     def shaft_torque(self, group, drive="right"):
-        """Torque in the crankshaft beside the throw of a group, by its first link, (..., N), N m."""
+        """Torque in the crankshaft next to the throw of a group, by its first link, (..., N), N m."""
         return self._scalar(shaft.shaft_torque(self, group, drive))
 
     def ground_force(self, place=None):

@@ -118,7 +118,7 @@ def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to ge
         f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "
         f"{_degrees(angle)} deg. "
         f"It feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times. At 1 or more there are no forces in "
-        "equilibrium or several states of forces (for several joints together: may be); lower the "
+        "equilibrium or several states of forces (for several joints together: may be). Lower the "
         f"coefficients, lengthen the shoes or steepen the links{other}",
         np.unique(angle).tolist(),
     )

@@ -10,8 +10,8 @@ determinate on bearings at z1 < z2. With the forces P_i of groups on the crank, 
 
     R_right = -sum of P_i (z_i - z1) / (z2 - z1),    R_left = R_O - R_right
 
-The torque in the shaft beside a throw is minus the sum of the moments about O of all loads between it and the free end.
-Friction in main bearings, belts and gears are left out. Source of the couples: J. P. den Hartog, *Mechanical
+The torque in the shaft next to a throw is minus the sum of the moments about O of all loads between it and the free
+end. Friction in main bearings, belts and gears are left out. Source of the couples: J. P. den Hartog, *Mechanical
 Vibrations*, 1956, chapter 5.
 """
 
@@ -77,7 +77,7 @@ def bearing_reaction(state, joint, at):
 
 
 def shaft_torque(state, group, drive):
-    """Torque in the shaft beside the throw of a group, on the side of the drive, N m; None if it is 0."""
+    """Torque in the shaft next to the throw of a group, on the side of the drive, N m; None if it is 0."""
     mechanism = state.mechanism
     _require_planes(mechanism)
     problem = checks.choice(f"{mechanism.name}: group on the crank", group, mechanism.on_shaft)

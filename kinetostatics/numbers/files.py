@@ -75,8 +75,8 @@ def read_columns(path, wanted):
     Raises
     ------
     CaseError
-        The file cannot be read, a comment follows the heading, a column is missing, there twice, has no unit or one
-        that does not convert, a row is of another length, or holds no number.
+        The file cannot be read, or a comment follows the heading. A column is missing, appears twice, has no unit or a
+        wrong unit. A row has another length, or a cell is not a number.
     """
     headings, rows = _rows(path)
     for line, cells in rows:

@@ -5,9 +5,9 @@ and the constants it refers to: globals, closures, defaults, attributes of funct
 where a value may change unnoticed, for example the items of a list.
 
 `digest` returns a text that is the same in every session, for resumed sweeps: of a variant, a scene or a function. For
-a function it covers the compiled code and all it refers to: constants, defaults, closures, arguments of a `partial`,
-the function inside a decorator, the object of a method, values and functions of its own module. Of other modules it
-covers name and version only, and no attribute that is looked up by text.
+a function it covers the compiled code and all references of it. These are constants, defaults, closures, arguments of a
+`partial`, the function inside a decorator, the object of a method, values and functions of its own module. Of other
+modules it covers name and version only, and no attribute that is looked up by text.
 """
 
 import hashlib

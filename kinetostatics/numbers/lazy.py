@@ -39,7 +39,7 @@ def _stub(package):
 
 
 def public_name(package, name, otherwise=lambda name: ""):
-    """Object of a public name of a package, loaded from where its stub says; for ``"__all__"`` the list of names.
+    """Object of a public name of a package, loaded from the module in its stub; for ``"__all__"`` the names.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, holds the kinds of parts,
 names, assembly modes, and zeros, which count as absent. Its *leaves* are the numbers in the order of the structure,
-each a float or an array of designs (..., 1); its *tables* are arrays with a value for each crank angle. Programs are
+each a float or an array of designs (..., 1). Its *tables* are arrays with a value for each crank angle. Programs are
 cached by structure, so new numbers never make a new program. `flatten` runs for every scene that is solved, so it takes
 microseconds: one function per type, written for its fields. `StructureCache` keeps results that all items of one
 structure share.
@@ -295,7 +295,7 @@ _ABSENT_SOURCE = (
 def _dataclass_flattener(kind):
     """Function that flattens items of a dataclass; it runs for each part of each scene that is solved.
 
-    Its source names the fields one after another: Python 3.11 finds named attributes at a known place, while a loop
+    Its source names the fields one after another, because Python 3.11 finds named attributes at a known place. A loop
     with `getattr` looks each up again, which made a scene's flattening 1.6 times as long.
     """
     over_angles = getattr(kind, "OVER_ANGLES", ())

@@ -1,9 +1,9 @@
 """Springs that balance a slider of a scene, including their own mass.
 
 At the crank speed w the end of a spring of stiffness c and mass m has the dynamic stiffness c z cot z, z = w sqrt(m/c)
-(`machine.loads.surge`). It balances the mass m3 if m3 w^2 = c z cot z. With the uncorrected stress tau and the
-largest speed v of the slider, z = v sqrt(2 rho G) / tau for push-pull springs, and twice that for opposed pairs that
-stay pressed, for any wire and count. For z >= pi / 2 no balance exists.
+(`machine.loads.surge`). It balances the mass m3 if m3 w^2 = c z cot z. With the uncorrected stress tau and the largest
+speed v of the slider, z = v sqrt(2 rho G) / tau for push-pull springs. It is twice that for opposed pairs that stay
+pressed, for any wire and count. For z >= pi / 2 no balance exists.
 """
 
 from dataclasses import dataclass, field, fields
@@ -122,7 +122,7 @@ def spring_for(scene, spring="spring", **options):
     if stiffness == np.inf or abs(stiffness - before) > TOLERANCE * stiffness:
         raise ParameterError(
             f"spring_for: no {found.arrangement} springs of {found.material.name} balance {balance / speed**2:.6g} kg: "
-            f"their surge ratio is {np.pi / z:.3g}, and at 2 or less their own mass uses up all stiffness; allow more "
+            f"their surge ratio is {np.pi / z:.3g}, and at 2 or less their own mass uses up all stiffness. Allow more "
             "stress, or use gas springs (ks.GasSpring), or none"
         )
     given = {item.name: getattr(found, item.name) for item in fields(found) if item.init}

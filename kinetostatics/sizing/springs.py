@@ -126,7 +126,7 @@ class SpringMaterial(checks.Checked):
             if not (0.0 <= mean < ultimate and alternating > 0.0):
                 yield (
                     f"{name} must be a mean from 0 to less than {ultimate:.4g} Pa (ultimate stress in torsion of the "
-                    f"thickest wire), and an alternating stress above 0; got {mean:.4g} and {alternating:.4g} Pa"
+                    f"thickest wire), and an alternating stress above 0. Got {mean:.4g} and {alternating:.4g} Pa"
                 )
 
     def tensile_strength(self, wire_diameter):

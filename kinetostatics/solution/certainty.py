@@ -2,7 +2,7 @@
 
 The uncertainty is of first order: sensitivities f_i, exact derivatives of the recorded program, times the standard
 uncertainties u_i (JCGM 100:2008, section 5.1). A warning names the angles where the second order is not small. For
-independent normal inputs the second-order terms, 1/2 sum f_ij d_i d_j, have the mean 1/2 sum f_ii u_i^2 and the
+independent normal inputs the second-order terms are 1/2 sum f_ij d_i d_j. They have the mean 1/2 sum f_ii u_i^2 and the
 variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note). The second order is the root of their mean square. All
 values are in the unit of the quantity.
 """
@@ -289,7 +289,7 @@ class Certainty(Parameters):
         """Uncertainty of each value of a quantity, from uncertain inputs and from rounding.
 
         The uncertainty is of first order in the inputs, by exact derivatives (JCGM 100:2008, *Guide to the expression
-        of uncertainty in measurement*, section 5.1); `tolerances` handles spreads of any size and distribution. Near
+        of uncertainty in measurement*, section 5.1). `tolerances` handles spreads of any size and distribution. Near
         limit positions and toggles, which move with the inputs, first order is inaccurate; a warning gives the angle.
 
         Parameters
@@ -315,9 +315,9 @@ class Certainty(Parameters):
         Warns
         -----
         ConditionWarning
-            At some crank angle the second order of the inputs (with products of two inputs) is more than a tenth of
-            the first order and more than a thousandth of its median. Or the quantity has no value with one or two
-            inputs changed by their uncertainty.
+            At some crank angle the second order of the inputs (including products) is more than a tenth of the first
+            order and more than a thousandth of its median. Or the quantity has no value with one or two inputs changed
+            by their uncertainty.
 
         Examples
         --------

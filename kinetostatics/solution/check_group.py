@@ -87,7 +87,7 @@ def check(group):
 
     Parameters
     ----------
-    group : SliderGroup, RockerGroup, CamRoller or alike
+    group : SliderGroup, RockerGroup, CamRoller or similar
         Its members are listed in `kinetostatics.machine.group`; a single design.
 
     Returns
@@ -99,8 +99,8 @@ def check(group):
     Raises
     ------
     ParameterError
-        A member is missing, `place` adds less than the group declares, `closure` is no number for each crank angle or
-        not negative where `place` finds no position, or the group closes nowhere at its scale.
+        A member is missing, or `place` adds less than the group declares. `closure` is no number for each crank angle
+        or not negative where `place` finds no position, or the group closes nowhere at its scale.
 
     Examples
     --------

@@ -351,7 +351,7 @@ def _by_differences(solution):
     """Scene, and function of sizes, as `_Recorded.of`, by central differences of the kernels on plain numbers."""
     warnings.warn(
         f"{solution.mechanism.name}: a group of it does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
-        "so its condition follows from differences instead of exact derivatives; it is rough near limit positions",
+        "so its condition follows from differences instead of exact derivatives. It is rough near limit positions",
         ConditionWarning,
         stacklevel=4,
     )
@@ -445,10 +445,10 @@ def warn_of_lost_digits(solution, margins):
     warnings.warn(
         f"{solution.mechanism.name}: at crank angle {np.degrees(angle):.9g} deg {cause} "
         f"magnified {found[worst]:.3g} times, so rates and "
-        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there; {count} of "
-        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition gives the "
-        "magnification at each angle; for the given numbers often far more digits are correct, which is proven by "
-        f"solution.error_bound(quantity)){''.join(f'; {text}' for text in kinks)}",
+        f"forces have about {max(0.0, 16.0 - np.log10(found[worst])):.0f} correct digits there. {count} of "
+        f"{math.prod(solution.shape)} crank angles lose half of their digits or more (solution.condition). For the "
+        "given numbers often far more digits are correct, as solution.error_bound(quantity) proves"
+        f"{''.join(f'; {text}' for text in kinks)}",
         ConditionWarning,
         stacklevel=4,
     )

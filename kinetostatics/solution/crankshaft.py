@@ -17,7 +17,7 @@ class CrankshaftResults:
     def rocking_moment(self):
         """Moment of the inertia of all moving masses on the frame about the axes x and y through O, (2, ..., N), N m.
 
-        The sum of (-z_i F_iy, z_i F_ix) over the shaking force F_i in each plane z_i, z toward the viewer; about the
+        The sum of (-z_i F_iy, z_i F_ix) over the shaking force F_i in each plane z_i, z toward the viewer. About the
         plane z0 it is M - z0 k x F.
 
         Examples
@@ -30,9 +30,9 @@ class CrankshaftResults:
         return self._found(ROCKING)
 
     def shaft_torque(self, group, drive="right"):
-        """Torque in the crankshaft beside the throw of a group, on the side of the drive, (..., N), N m.
+        """Torque in the crankshaft next to the throw of a group, on the side of the drive, (..., N), N m.
 
-        Positive counter-clockwise on the part toward the free end. Beside the throw nearest to the drive it is the
+        Positive counter-clockwise on the part toward the free end. Next to the throw nearest to the drive it is the
         balancing torque less friction in the main bearings. The quantity "shaft_torque coupler2" of extremes and
         sweeps assumes the drive on the right.
 

@@ -31,7 +31,7 @@ class Ground(Mapping):
     - "cam": along the common normal. The point is the contact if the roller has a radius (`Roller`, `RollerFriction`),
       on the flank according to the sign of the force; else the roller's centre A, through which the normal passes.
     - loads, named as in parameter paths, "spring", "spring2", "point_damper", "torsion_spring" ...: the foot of a
-      spring along a guide, at the coordinate where it is free; the fixed point of a load between two points; the
+      spring along a guide, at the coordinate where it is free. The fixed point of a load between two points; the
       opposite couple of a torque against the frame; a `ProcessForce` with ``reaction="frame"``, at the slider pin.
     - "motor": the opposite of the balancing torque, a couple.
 
@@ -73,7 +73,7 @@ class Ground(Mapping):
         ):
             warnings.warn(
                 f"{self.solution.mechanism.name}: the forces on the frame lack up to {np.nanmax(force):.3g} N and "
-                f"{np.nanmax(moment):.3g} N m about O, because a group of your own loads the frame by more than its "
+                f"{np.nanmax(moment):.3g} N m about O. A group of your own loads the frame by more than its "
                 "declared pairs with the frame (kinetostatics.machine.group)",
                 stacklevel=2,
             )

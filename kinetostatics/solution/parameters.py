@@ -96,7 +96,7 @@ def require_known_between_angles(item):
     varying = tables_over_angles(item)
     if varying:
         raise ParameterError(
-            f"{', '.join(varying)} is a table over the given crank angles, without values between them; use a constant "
+            f"{', '.join(varying)} is a table over the given crank angles, without values between them. Use a constant "
             "(or, for a load, a Table or a function of the motion) to evaluate at other angles"
         )
 

@@ -1,4 +1,4 @@
-"""Means over the period as users hold them: torque, power and energy of the drive, losses, efficiency."""
+"""Means over the period for users: torque, power and energy of the drive, losses, efficiency."""
 
 from typing import Any
 

@@ -197,7 +197,7 @@ class Program:
         checks.require("program", checks.truth("tight", tight))
         if tight and not self._is_own:
             raise ParameterError(
-                "program: tight bounds exist in double precision with the engines compiled and numpy; this one runs "
+                "program: tight bounds exist in double precision with the engines compiled and numpy. This one runs "
                 f"by {self.engine} in {self.precision} precision, so leave tight out, or compile a program with them"
             )
         state, leaves = self._at(angle, values)
@@ -307,7 +307,7 @@ class Program:
             if lengths and varied.mechanism.passages != self._passages:
                 raise ParameterError(
                     f"program: {self.scene.mechanism.name} with other values of {', '.join(sorted(lengths))} is "
-                    "of another kind (it passes other change points) and needs another program: change lengths "
+                    "of another kind (it passes other change points) and needs another program. Change lengths "
                     "together so that the kind stays, or compile a program of it"
                 )
         return numbers

@@ -274,8 +274,8 @@ def solve(
     on_gap : "raise" or "nan"
         Action where the mechanism cannot be assembled. "raise": `AssemblyError` with the crank-angle intervals. "nan":
         NaN there and exact values elsewhere (as needed under ``jax.jit``). If one of several groups is open, NaN are
-        its motion and forces and those of groups attached to it, the forces of groups that carry it, and all quantities
-        of the crank or the whole mechanism (torque, "O", shaking, inertia, energies).
+        its motion and forces and those of groups attached to it, and the forces of groups that carry it. Also NaN are
+        all quantities of the crank or the whole mechanism (torque, "O", shaking, inertia, energies).
     engine : "numpy" or "compiled"
         "compiled" runs the same kernels as one loop per quantity, compiled by numba (extra `fast`). The first call
         takes about a second; then the machine code is on disk. By default it is used from a million crank angles
@@ -291,7 +291,7 @@ def solve(
     AssemblyError
         The mechanism does not close at some of the angles and ``on_gap="raise"``.
     ParameterError
-        A value is not finite, a load names an unknown link or joint, or has no value at a crank angle, as a
+        A value is not finite, or a load names an unknown link or joint. A load has no value at a crank angle, as a
         force between points that meet, or its function is not pure.
     MissingLibraryError
         ``engine="compiled"`` without numba.

@@ -1,8 +1,8 @@
 """Axial force, shear force and bending moment inside a straight link, over its length and the turn.
 
-The part of a link from its first pin to a section is in equilibrium: inertia, weight, forces of pins and loads on it,
-and the forces of the section (d'Alembert; Timoshenko, *Strength of Materials*). With x from the first pin along t, n
-the left normal of t, mu the mass per length, and the acceleration a, which is linear in x:
+The part of a link from its first pin to a section is in equilibrium. Its forces are inertia, weight, pins, loads and
+the forces of the section (d'Alembert; Timoshenko, *Strength of Materials*). With x from the first pin along t, n the
+left normal of t, mu the mass per length, and the acceleration a, which is linear in x:
 
     N' = mu (a - g).t        V' = mu (g - a).n        M' = V
 
@@ -56,7 +56,7 @@ class Bar:
     masses : sequence of (x, mass)
         Point masses, kg, at x from the first pin, m.
     mass : float, optional
-        Of the uniform bar, kg; by default what the link's mass leaves beside `masses`.
+        Of the uniform bar, kg; by default the link's mass less `masses`.
     second_moment, youngs_modulus : float, optional
         Second moment of area I, m4, and E, Pa; buckling and rigidity need them.
 
@@ -271,8 +271,9 @@ class WithSections:
         Raises
         ------
         ParameterError
-            Mass, centre or inertia of the bar are not those of the link; a force on the link acts off the line of its
-            pins, moves along it, or is a couple without a place; the mechanism does not close all round; a batch.
+            Mass, centre or inertia of the bar are not those of the link. A force on the link acts off the line of its
+            pins, moves along it, or is a couple without a place. The mechanism does not close all round or has several
+            designs.
         QuantityError
             The link is unknown.
 
@@ -301,7 +302,7 @@ class WithSections:
 
 
 def _refined(turn, heights):
-    """Largest value of each height over a turn, and its crank angle: all are refined together by ever finer samples."""
+    """Largest value of each height over a turn, and its crank angle; all are refined together."""
     angle = np.union1d(turn.angle, turn.even.crank_angle)
     values, reach = heights(turn.at.moved_to(angle)), np.diff(angle).max()
     rises = np.diff(values, prepend=values[:, -1:]) > 0.0
@@ -369,9 +370,9 @@ def _own_bar(bar, link, start, length, owner):
     lost = (mass - link.mass, np.hypot(centre - along, across), inertia - link.inertia)
     sizes = (link.mass, length, max(link.mass * length**2, link.inertia))
     text = (
-        f"the bar is not the link: its mass, {mass:.6g} kg, differs by {lost[0]:+.4g} kg, its centre, {centre:.6g} m "
-        f"from the first pin, by {lost[1]:.4g} m, its moment of inertia, {inertia:.6g} kg m2, by {lost[2]:+.4g} kg m2; "
-        "give the link these numbers, or change the bar"
+        f"the bar is not the link. Its mass, {mass:.6g} kg, differs by {lost[0]:+.4g} kg, its centre, {centre:.6g} m "
+        f"from the first pin, by {lost[1]:.4g} m, its moment of inertia, {inertia:.6g} kg m2, by {lost[2]:+.4g} kg m2. "
+        "Give the link these numbers, or change the bar"
     )
     equal = all(abs(part) <= TOLERANCE * size for part, size in zip(lost, sizes, strict=True))
     last = max((x for x, _ in bar.masses), default=0.0)

@@ -1,8 +1,9 @@
 """Shares of the sources of a force: inertia and weight of each link, and each load, at the peak of the total and alone.
 
 At a given motion inverse dynamics is linear in masses, inertias and loads, so a force is the sum of those that each
-source causes alone (superposition: Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*, dynamic force
-analysis). The share of a source is its value where the total is largest; of a vector V_i its projection on the total,
+source causes alone. This is superposition (Uicker, Pennock and Shigley, *Theory of Machines and Mechanisms*, dynamic
+force analysis). The share of a source is its value where the total is largest; of a vector V_i its projection on the
+total,
 
     R = sum V_i        share_i = V_i . R / |R|        sum share_i = |R|
 
@@ -138,7 +139,8 @@ class Shares:
         """A row for each source and the total, a pandas DataFrame.
 
         Columns: share at the peak of the total (with friction the effect of leaving out), in the unit and in percent of
-        the total; peak of the source alone with its crank angle, and its root mean square. `attrs` holds the `note`.
+        the total. Then peak of the source alone with its crank angle, and its root mean square. `attrs` holds the
+        `note`.
         """
         import pandas as pd
 
@@ -212,8 +214,8 @@ def _linear_quantity(solution, name) -> tuple[str, Quantity]:
     bare = without_bars(solution, name)
     if known[bare].kind == GROUND:
         raise QuantityError(
-            f"shares: {bare} is a force on the frame, at places that a machine with one source alone may lack; shares "
-            f"of its reactions and shaking force tell as much: {', '.join(linear)}"
+            f"shares: {bare} is a force on the frame, at places that a machine with one source alone may lack. Use "
+            f"shares of its reactions or shaking force: {', '.join(linear)}"
         )
     if bare not in linear:
         raise QuantityError(

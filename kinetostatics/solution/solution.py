@@ -125,7 +125,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     - "guide": ground on slider, or on follower; friction included.
 
     Your own groups and loads may also use `placement` (joints and links as kinematic coefficients), `spot`,
-    `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
+    `as_vector`, `accelerating`. Inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
     `places`, `PATHS`, `RULES`, `unsolved_at`, `moved_to`, `first_look`, `with_doubt`, `proportion`, `farthest`,
     `loads_are_given`, `is_given` and `check`.
 
@@ -443,10 +443,10 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     def condition(self):
         """Magnification of relative errors of lengths, including rounding, in rates and forces, (..., N).
 
-        A bound of the true magnification: the sum over all lengths and the crank angle p of ``|p dq/dp|``, over the
-        largest term of q, worst of rates, reactions and torque (`solution.condition`). Below 1e3 no digit is lost. It
-        is infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has
-        about 16 - log10(condition) correct digits of its largest term, or more.
+        It is a bound: the sum of ``|p dq/dp|`` over all lengths and the crank angle p, over the largest term of q. The
+        worst of rates, reactions and torque counts (`solution.condition`). Below 1e3 no digit is lost. It is infinite
+        at a limit position, toggle or change point, NaN where the mechanism does not close. A result has about 16 -
+        log10(condition) correct digits of its largest term, or more.
 
         Where change points are passed ("open", "crossed") it covers only motion and torque, which are finite there;
         `condition_of` gives it for a reaction.

@@ -77,10 +77,10 @@ def largest_with_uncertainty(solution, inputs):
     moves along a steep curve: there the largest values with each input smaller and larger by its uncertainty are
     compared. Quantities that do not vary over the period are left out.
 
-    A row has the unit, the value of largest magnitude and its crank angle, the standard uncertainty from all inputs,
-    the proven bound on rounding (NaN where there is none), and the input with the largest share of the variance.
-    Inputs, errors and the warning, which is one for all quantities, are those of `Solution.uncertainty`; the solution
-    is of one design, and its own crank angles do not matter.
+    A row has the unit, the value of largest magnitude and its crank angle, and the standard uncertainty from all
+    inputs. It also has the proven bound on rounding (NaN without one) and the input with the largest share of the
+    variance. Inputs, errors and the warning, which is one for all quantities, are those of `Solution.uncertainty`; the
+    solution is of one design, and its own crank angles do not matter.
     """
     import pandas as pd
 

@@ -76,8 +76,8 @@ class Needs:
     left_out : dict of str to str
         Simplifications that were not tried in combinations, with the reason.
     rigidity : dict of str to Sized
-        By link with a bar, and "shaft": natural frequency, rad/s, its `order`, deflection relative to the length or in
-        rad, and `departure`, the relative error of a rigid part; ``.table()`` has formulas.
+        By link with a bar, and "shaft": natural frequency, rad/s, its `order`, and deflection relative to the length or
+        in rad. `departure` is the relative error of a rigid part; ``.table()`` has formulas.
 
     Examples
     --------
@@ -128,15 +128,16 @@ class Needs:
 def needs(scene, quantity, within=0.01, *, variant=None, progress=True, bars=None, shaft=None) -> Needs:
     """Find the cheapest model within a tolerance: run every combination of simplifications.
 
-    The simplifications are: no gravity, springs, process forces, or friction of pins, guides, slots or rollers;
-    constant crank speed; guide through O; mass centres on the links; massless links; no moment of inertia of links with
-    two joints; two masses at its joints for each coupler; Fourier series of one or two harmonics.
+    Simplifications omit gravity, springs, process forces, and friction of pins, guides, slots or rollers. They set a
+    constant crank speed, a guide through O, mass centres on the links, massless links, or no inertia of links with two
+    joints. They replace a coupler by two masses at its joints, and kinematics by Fourier series of one or two
+    harmonics.
 
     Links of one kind, such as coupler and coupler2, are simplified together, and so are joints with one kind of
     friction. Above 2000 combinations, the simplifications with the largest single errors are left out; a cheaper model
-    with cancelling errors would then be missed. Simplifications that the scene does not allow are also left out: two
-    masses for a coupler whose mass centre is beyond its joints, or harmonics that move a slider beyond the table of its
-    load. `Needs.left_out` lists both with the reason.
+    with cancelling errors would then be missed. Simplifications that the scene does not allow are also left out.
+    Examples are two masses for a coupler whose mass centre is beyond its joints, or harmonics that move a slider beyond
+    the table of its load. `Needs.left_out` lists both with the reason.
 
     Parameters
     ----------

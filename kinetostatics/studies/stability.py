@@ -260,7 +260,7 @@ def study(places=None, methods=None, progress=None):
     -------
     pandas.DataFrame
         A row for each place, number and method: largest error over the crank angles, relative to the quantity's largest
-        value; the largest condition; the change by one rounding of the crank angle; the largest bound by
+        value. Then the largest condition, the change by one rounding of the crank angle, and the largest bound by
         `Solution.error_bound` for the library's own values, infinite without proof. Then the numbers of angles that
         lose digits, flip to the other assembly or are NaN; the exception raised; the reason if not given.
 

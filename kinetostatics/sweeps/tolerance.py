@@ -79,7 +79,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
         As for `sweep`: "ratio mean_absolute balancing_torque" ...
     spreads : dict of parameter to text or quantities, optional
         "normal 712 kN/m +- 5 kN/m", "695..705 kN/m" (uniform), "triangular 690..710..740 kN/m", or pint quantities as
-        for `designs.sample`; by default those in [tolerances] of the case file that apply to the variant.
+        for `designs.sample`. By default those in [tolerances] of the case file that apply to the variant.
     count : int
         Number of designs n, a power of two; the Sobol indices need n (parameters + 2) designs.
     seed : int
@@ -96,7 +96,7 @@ def tolerances(case, outputs, spreads=None, *, count=4096, seed=0, folder=None, 
     Raises
     ------
     ParameterError
-        Spreads are missing or unreadable, the count is not a power of two, or designs within the spread cannot be
+        Spreads are missing or unreadable, or the count is not a power of two. Designs within the spread cannot be
         computed or have an infinite output, which makes quantiles and indices meaningless.
 
     Examples

@@ -198,8 +198,8 @@ def pressure_angle(solutions, ax=None):
 def acceleration_error(solutions, ax=None, slider=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
-    With the stroke S from the exact extremes of the slider position, and psi the crank angle from the guide, the law is
-    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. By default the only slider, or
+    Let S be the stroke from the exact extremes of the slider position, and psi the crank angle from the guide. The law
+    is -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. By default the only slider, or
     the one without a label.
 
     Parameters

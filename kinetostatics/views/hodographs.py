@@ -39,15 +39,15 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
     The curve includes extremes of the magnitude between the solved crank angles, kinks and jumps. It ends with a cross
     where it has no value, and with an arrow head where it grows far beyond the rest.
 
-    In the axes of a link the force turns relative to the link: the curve shows from which side the load comes on a pin
-    fixed to it (a polar wear diagram), so that an oil hole goes where the load never points.
+    In the axes of a link the force turns relative to the link. The curve then shows the side of the load on a pin fixed
+    to the link (a polar wear diagram). Put an oil hole where the load never points.
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
     joint : str
-        Joint, for its reaction; the vector attribute "shaking_force"; or a place where the machine pushes the frame
-        (`Solution.ground`), "cam", "spring" ..., for the force on the frame, that of a joint by "ground O".
+        Joint, for its reaction; or the vector attribute "shaking_force". For a force on the frame, a place of
+        `Solution.ground`, "cam", "spring" ...; for a joint "ground O".
     ax : Axes, optional
     marks : float
         Step of the crank-angle marks, degrees; a mark appears if the solution has that angle, to half a degree.

@@ -1,9 +1,9 @@
 """Figures by matplotlib; none is shown, and no global setting changes.
 
-Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result.
-`solutions` is one `Solution` or a mapping of label to `Solution`; where a figure shows one machine only, a mapping gets
-a panel for each, and the result is a list of Axes. ``units={"force": "kN", "length": "mm"}`` chooses units, as of
-`in_units`. A quantity that the mechanism lacks raises `QuantityError`, a batch of designs `ParameterError`.
+Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result. `solutions`
+is one `Solution` or a mapping of label to `Solution`. Where a figure shows one machine only, a mapping gets a panel for
+each, and the result is a list of Axes. ``units={"force": "kN", "length": "mm"}`` chooses units, as of `in_units`. A
+quantity that the mechanism lacks raises `QuantityError`, a batch of designs `ParameterError`.
 """
 
 from . import (

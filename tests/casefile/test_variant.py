@@ -52,7 +52,7 @@ def test_the_law_of_a_cam_gives_the_length_left_out(tmp_path):
     text = HEAD + 'mechanism = "cam-crank-slider"\ncam = { kind = "cosine-law", amplitude = "0.3 m", mean = "2 m" }\n'
     (group,) = variant(tmp_path, text).mechanism.groups[1:]
     assert group.coupler_length == ks.cams.CosineLaw(0.3, 2.0).coupler_length
-    with pytest.raises(ks.CaseError, match="only a cosine-law cam fixes it"):
+    with pytest.raises(ks.CaseError, match="only a cosine-law cam determines it"):
         variant(tmp_path, HEAD + 'mechanism = "cam-crank-slider"\ncam = { kind = "circle", radius = "0.3 m" }\n')
 
 

@@ -202,7 +202,7 @@ def test_new_case_with_wrong_ending_is_refused(name, tmp_path, monkeypatch, caps
     monkeypatch.chdir(tmp_path)
     assert main(["new", name]) == 2
     suffix, stem = Path(name).suffix, str(Path(name).with_suffix(""))
-    told = f"{name} ends in {suffix}, a case file in .toml: write {stem}.toml, or {name}.toml if you mean it"
+    told = f"{name} ends in {suffix}, a case file in .toml: write {stem}.toml, or {name}.toml if this is the name"
     assert capsys.readouterr().err == f"kinetostatics: new: {told}\n"
     assert not any(tmp_path.iterdir())
 

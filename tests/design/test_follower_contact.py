@@ -190,7 +190,7 @@ TWO = (BARE, ks.RollerFollower(ks.laws.cosine(0.01, 0.05), pin="S", label="_2"))
         (
             (LOBED,),
             {"roller_radius": 0.035},
-            r"contact: a roller of radius 0.035 m undercuts the disk: .* of 0.03025 m at crank angle \S+ deg; take",
+            r"contact: a roller of radius 0.035 m undercuts the disk. .* of 0.03025 m at crank angle \S+ deg; take",
         ),
         (TWO, {}, "contact: a cam drive has several followers; choose one as follower: 'follower', 'follower_2'"),
         (TWO, {"follower": "follower2"}, "did you mean 'follower_2'"),

@@ -93,7 +93,7 @@ def test_contact_is_kept_down_to_the_bound(given):
 
 WRONG = {
     "too heavy": ({"mass": 2.0}, r"lift off at 348\.\d+ deg.* 0\.926\d* times .* lighter than 1\.71"),
-    "too stiff": ({"stiffness": 13000.0}, r"without preload; choose less than 12437\.\d N/m"),
+    "too stiff": ({"stiffness": 13000.0}, r"without preload. Choose less than 12437\.\d N/m"),
     "small base": ({"base_radius": 1e-3}, r"exceeds 30 deg; choose at least 0\.01"),
     "no mass": ({"mass": 0.0}, "mass"),
     "text": ({"travel": "12 mm"}, "travel"),

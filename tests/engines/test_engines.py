@@ -167,7 +167,7 @@ def test_unknown_engines_are_refused_with_a_list():
 def test_a_group_that_branches_on_values_is_refused(interpreted):
     scene = with_group(OneSided(ks.Link(3.0, 0.1)))
     assert solve(scene, SAMPLES).scalar("pan moment").shape == SAMPLES.shape
-    with pytest.raises(NotGivenError, match=r"cannot take crank with a pan.*kernels must not branch on values"):
+    with pytest.raises(NotGivenError, match=r"cannot run crank with a pan.*kernels must not branch on values"):
         solve(scene, SAMPLES, engine="compiled")
 
 

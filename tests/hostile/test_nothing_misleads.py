@@ -442,7 +442,7 @@ IMPURE = {
     "load of one's own": (Counting, "Counting on 'slider': its function gives 1 N and then 2 N"),
     "random numbers": (
         lambda: ks.ProcessForce(lambda q: GENERATOR.normal(size=np.shape(q.crank_angle))),
-        "keep no counter, random number or clock in it",
+        "use no counter, random number or clock in it",
     ),
     "clock": (
         lambda: ks.ProcessForce(lambda q: time.perf_counter()),

@@ -283,7 +283,7 @@ def test_program_refuses_unsolved_friction():
     program = ks.compile(ks.Scene(RUBBED, friction=weak, **DRIVE), "balancing_torque", engine="numpy")
     program(TURN, {"friction.O.mu": 1.1e-4})
     strong = {"friction.B.mu": 0.9, "friction.B.radius": 0.2, "friction.O.mu": 0.9, "friction.O.radius": 0.2}
-    with pytest.warns(ks.ConditionWarning, match="not found to rounding"):
+    with pytest.warns(ks.ConditionWarning, match="not converged to rounding"):
         program(TURN, strong)
     with pytest.raises(ks.ParameterError, match="crank_speed and crank_acceleration are both 0"):
         program(TURN, {"crank_speed": 0.0, "crank_acceleration": 0.0})
@@ -473,7 +473,7 @@ def test_other_crank_angles_get_the_passes_that_they_need():
 def test_friction_that_does_not_converge_at_other_crank_angles_is_said(monkeypatch):
     s = ks.Scene(PUMP, 3.0, loads=ks.Gravity(), friction={"A": ks.PinFriction(0.1, 0.01)}).solve(1)
     monkeypatch.setattr(jamming, "MAX_CHANGE", -1.0)
-    with pytest.warns(ks.ConditionWarning, match="not found to rounding") as found:
+    with pytest.warns(ks.ConditionWarning, match="not converged to rounding") as found:
         s.at(TURN)
     assert found[0].filename == __file__
 

@@ -141,7 +141,7 @@ def test_a_group_of_the_users_own_that_pushes_the_frame_by_no_pair_is_warned_of(
     assert list(s.ground) == ["O", "guide", "motor"]
     lacking = with_group(Pan(ks.Link(3.0, 0.05))).solve(ANGLES)
     with pytest.warns(
-        UserWarning, match=r"on the frame lack up to 0 N and 52 N m about O, because a group of your own"
+        UserWarning, match=r"on the frame lack up to 0 N and 52 N m about O. A group of your own"
     ):
         assert list(lacking.ground) == ["O", "motor"]
     with pytest.warns(UserWarning, match="the forces on the frame lack"):

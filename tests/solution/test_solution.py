@@ -263,7 +263,7 @@ def test_every_method_is_listed_with_its_arguments():
 
 @every("name", MACHINES)
 def test_reactions_are_listed_with_their_body(name):
-    section = " ".join(TEXT[TEXT.index("A reaction acts") : TEXT.index("For groups and loads")].split())
+    section = " ".join(TEXT[TEXT.index("A reaction acts") : TEXT.index("Your own groups and loads")].split())
     for joint, output in MACHINES[name].outputs.items():
         if not output.vector:
             continue

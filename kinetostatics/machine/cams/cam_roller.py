@@ -77,7 +77,7 @@ class CamRoller(checks.Checked, Group):
 
     Parameters
     ----------
-    cam : cams.Circle, cams.CosineLaw, cams.Harmonic, cams.Sampled or alike
+    cam : cams.Circle, cams.CosineLaw, cams.Harmonic, cams.Sampled or similar
         Any object with ``polar(angle, ray)`` that returns r, r', r'' in m.
     block : Link
         Block with roller; reference joint A, axis along the crank ray.
@@ -110,7 +110,7 @@ class CamRoller(checks.Checked, Group):
     PATHS: ClassVar = {"plane": "block_plane"}
     RULES = checks.Rules(
         "cam roller",
-        cam=checks.HasMembers(("polar",), "one of ks.cams or alike"),
+        cam=checks.HasMembers(("polar",), "one of ks.cams or similar"),
         block=LINK,
         roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
         plane=PLANE,

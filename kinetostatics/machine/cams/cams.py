@@ -143,10 +143,10 @@ class Circle(Cam):
 class CosineLaw(checks.Checked, Cam):
     """Cam that gives the slider the exact motion x_B = mean + amplitude cos(phi) along a guide through O.
 
-    A lies on the ray at the distance of the coupler length L from B, so r = x_B cos(phi) - w, where w is the signed
-    root of L^2 - x_B^2 sin(phi)^2. The two branches of the root join smoothly for one length only, L = max of
-    x_B sin(phi), reached at the singular angle phi*. Then the radicand has the double zero cos(phi) = cos(phi*) and,
-    divided by it, is a quadratic: with c = cos(phi), c* = cos(phi*), amplitude a, mean b
+    A is on the ray at the distance of the coupler length L from B. So r = x_B cos(phi) - w, where w is the signed root
+    of L^2 - x_B^2 sin(phi)^2. The two branches of the root join smoothly for one length only, L = max of x_B sin(phi),
+    reached at the singular angle phi*. Then the radicand has the double zero cos(phi) = cos(phi*) and, divided by it,
+    is a quadratic: with c = cos(phi), c* = cos(phi*), amplitude a, mean b
 
         w = (c - c*) sqrt(a^2 c^2 + p c + q),   p = 2 a (b + a c*),   q = b^2 - a^2 + 2 c* p - c*^2 a^2
 

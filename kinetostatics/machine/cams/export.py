@@ -34,7 +34,7 @@ STYLES = {
 RIM_RATIO = 1.12
 """Radius of a ring's material, relative to the largest distance of its working curve from the middle."""
 ANCHORS = ("end", "middle", "start")
-"""Where a text stands at its place: left of it, about it, or right of it."""
+"""Anchor of a text: the text is left of its place, centred, or right of it."""
 SVG_STYLE = (
     "path,line,circle{fill:none;stroke:#222;stroke-width:.25}"
     ".cam{stroke-width:.6;fill:#e8edf2}.hole{stroke-width:.6;fill:#fff}"

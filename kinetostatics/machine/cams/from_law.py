@@ -1,11 +1,11 @@
 """Cam that makes a slider follow a law of the whole turn: its one coupler length, and its radius free of cancellation.
 
-In the guide's own axes, with phi the crank angle from its direction, x(phi) the law and e the offset, B = (x, e) is
-d = x sin(phi) - e cos(phi) off the crank ray, and A on the ray at the coupler's length L from B:
+In the axes of the guide let phi be the crank angle from its direction, x(phi) the law and e the offset. B = (x, e) is d
+= x sin(phi) - e cos(phi) off the crank ray, and A on the ray at the coupler's length L from B:
 
     r = x cos(phi) + e sin(phi) - w,   w^2 = (L - d) (L + d)
 
-B is ahead of A at phi = 0 and past it half a turn on, so w must change its sign: smoothly only where it has a double
+B is ahead of A at phi = 0 and past it half a turn on, so w must change its sign. It does so smoothly only at a double
 zero, at phi1 with d = max d = L and at phi2 with d = min d = -L. With h1 = phi - phi1 and h2 = phi - phi2
 
     L - d = h1^2 q1,   L + d = h2^2 q2,   q1 = - integral over s from 0 to 1 of (1 - s) d''(phi1 + s h1)
@@ -195,8 +195,8 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     Parameters
     ----------
     law : Law
-        Coordinate of the slider along the guide from the foot of O, m, by the crank angle from the guide's direction:
-        from `laws`, or a function that gives position and three derivatives of a whole turn.
+        Coordinate of the slider along the guide from the foot of O, m, by the crank angle from the guide's direction.
+        It is from `laws`, or a function that gives position and three derivatives.
     coupler_length : float, optional
         m; by default computed. A smooth cam exists for one length only.
     guide_angle : float
@@ -241,7 +241,7 @@ def from_law(law, coupler_length=None, guide_angle=0.0, guide_offset=0.0):
     if coupler_length is not None and abs(values["coupler_length"] - length) > 1e-9 * length:
         raise ParameterError(
             f"from_law: a smooth cam makes this law with a coupler of {length:.10g} m only, where it is across the ray "
-            f"at {_degrees(far)} and {_degrees(near)} deg from the guide, got {values['coupler_length']:.10g} m; leave "
+            f"at {_degrees(far)} and {_degrees(near)} deg from the guide. Got {values['coupler_length']:.10g} m; leave "
             "coupler_length out to have it computed"
         )
     cam = LawCam(law, length, values["guide_angle"], offset, far, near)
@@ -284,7 +284,7 @@ def _two_lengths_message(law, offset, far, near):
             remedy = f"the law later by {np.degrees(phase):.4g} deg needs one only: {shifted}"
             break
     return (
-        f"from_law: no smooth cam makes this law: the coupler would have to be {far.length:.10g} m long at "
+        f"from_law: no smooth cam makes this law. The coupler would have to be {far.length:.10g} m long at "
         f"{_degrees(far)} deg from the guide, and {near.length:.10g} m at {_degrees(near)} deg, where it is across the "
         f"ray; {remedy}"
     )

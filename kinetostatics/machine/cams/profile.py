@@ -1,9 +1,9 @@
 """Working curve of a cam for a roller, the path of its cutter, and the limits of both: undercutting and collisions.
 
-With kappa the curvature of the pitch curve, positive where it is convex seen from outside, R the radius of the roller:
-a disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R), both
-positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the ring
-where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
+Let kappa be the curvature of the pitch curve, positive where it is convex seen from outside, and R the radius of the
+roller. A disk inside the pitch curve has the curvature kappa / (1 - kappa R), a ring around it -kappa / (1 + kappa R).
+Both are positive where the surface is convex to the roller. The roller would cut the disk away where kappa R >= 1, the
+ring where -kappa R >= 1 (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
 import warnings
@@ -142,7 +142,7 @@ class Profile:
         nearest = _nearest(made - side * radius * normal, made, angle)
         if nearest.value < radius * (1.0 - CUT_TOLERANCE):
             raise ParameterError(
-                f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}: its centre "
+                f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}. Its centre "
                 f"comes as near as {nearest.value:.6g} m to the working curve at crank angle "
                 f"{np.degrees(nearest.angle):.6g} deg; take a smaller"
             )
@@ -269,7 +269,7 @@ def _undercut_problems(cam, radius, side):
             spans = np.degrees(angle[order[[edges[::2], edges[1::2] - 1]]]).T
             where = " and ".join(f"from {start:.4g} to {stop:.4g} deg" for start, stop in spans) or "there alone"
         yield (
-            f"a roller of radius {radius:.6g} m undercuts the {side}: the pitch curve bends with a radius of "
+            f"a roller of radius {radius:.6g} m undercuts the {side}. The pitch curve bends with a radius of "
             f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
             "the roller's must be less"
         )
@@ -278,8 +278,8 @@ def _undercut_problems(cam, radius, side):
     nearest = _nearest(pitch, made, angle)
     if nearest.value < radius * (1.0 - CUT_TOLERANCE):
         yield (
-            f"a roller of radius {radius:.6g} m cuts into another part of the {side}: where it touches at crank angle "
-            f"{np.degrees(nearest.angle):.6g} deg its centre comes as near as {nearest.value:.6g} m later; "
+            f"a roller of radius {radius:.6g} m cuts into another part of the {side}. Where it touches at crank angle "
+            f"{np.degrees(nearest.angle):.6g} deg, its centre comes as near as {nearest.value:.6g} m later; "
             "take a smaller"
         )
     elif side == "disk" and least.value <= radius:

@@ -1,7 +1,7 @@
 """Line contact with a cam by Hertz: a roller, or the flat face of a follower, with its size and materials.
 
-For two cylinders under a force F over a width w (Johnson, *Contact Mechanics*, 1985, section 4.2), with
-1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 and 1/Re the sum of both curvatures,
+Two cylinders are under a force F over a width w (Johnson, *Contact Mechanics*, 1985, section 4.2). With 1/E* = (1 -
+nu1^2)/E1 + (1 - nu2^2)/E2 and 1/Re the sum of both curvatures,
 
     p0 = sqrt(F E* / (pi w Re)),   half width b = sqrt(4 F Re / (pi w E*))
 """
@@ -36,7 +36,7 @@ def half_width(force, width, modulus, radius):
 def relative_radius(bend, roller_radius, side):
     """Relative radius Re of a roller on its cam, m, from the curvature kappa of the pitch curve, 1/m.
 
-    The working curve is offset from the pitch curve by the radius R of the roller, so Re = R (1 - kappa R) on a disk,
+    The working curve is offset from the pitch curve by the radius R of the roller. So Re = R (1 - kappa R) on a disk,
     side -1, and R (1 + kappa R) on a ring, side +1.
     """
     return roller_radius * (1.0 + side * bend * roller_radius)

@@ -126,7 +126,7 @@ class Sampled(TurnTable, Cam):
                 raise
             raise NotGivenError(
                 "a sampled cam is read by a spline of SciPy's, which cannot take crank angles without values, as under "
-                'jax.jit: ks.compile(scene, ..., engine="jax") reads it beforehand; or give a cam with a law'
+                'jax.jit. The call ks.compile(scene, ..., engine="jax") reads it beforehand; or give a cam with a law'
             ) from error
 
     def _largest_acceleration(self):

@@ -242,7 +242,7 @@ class Follower(checks.Checked, Group):
 def path_curvature(joint):
     """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside.
 
-    Seen so it goes around clockwise.
+    In this view the joint moves around the cam clockwise.
     """
     place, first, second = joint
     along = subtract_vectors(first, left(place))

@@ -1,12 +1,12 @@
 """Swinging roller follower on a cam that turns with the crank: an arm about a fixed pivot, pressed outward by the cam.
 
-The arm stands at the angle beta(phi) from the line from its pivot Q to O, on the side that `assembly` selects; with l
-the arm along p, the roller centre is P = Q + l p, and seen from the cam it moves by w = P' - left(P) with the crank
-angle. The cam pushes across that, by left(w) / |w|, whose lever about Q is l times the cosine of the pressure angle,
+The arm stands at the angle beta(phi) from the line from its pivot Q to O, on the side that `assembly` selects. With l
+the arm along p, the roller centre is P = Q + l p. Seen from the cam it moves by w = P' - left(P) with the crank angle.
+The cam pushes across that, by left(w) / |w|, whose lever about Q is l times the cosine of the pressure angle,
 
     cosine = -(Q x p) / |w|,   Q x p = assembly |Q| sin(beta)
 
-(Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7). Moments about the pivot give the contact force; of
+(Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7). Moments about the pivot give the contact force. Of
 M, the moment of all loads on the arm about it, the crank feels -M dtheta/dphi for any shape of the cam.
 """
 
@@ -94,7 +94,7 @@ class SwingingFollower(follower.Follower):
     ----------
     cam : Law
         Angle at the pivot from the direction to O to the roller centre, rad, between 0 and pi, by the crank angle from
-        +x: one of `laws`, with rad for m, or a function that gives position and three derivatives. `disk` is the cam.
+        +x. One of `laws`, with rad for m, or a function that gives position and three derivatives. `disk` is the cam.
     arm_length : float or array
         From pivot to roller centre, m.
     pivot : (x, y)
@@ -120,10 +120,13 @@ class SwingingFollower(follower.Follower):
 
     Notes
     -----
-    "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
-    follower would lift off. `pivot_name`, a vector in N, ground on arm. "pressure_angle" (rad), of the contact force
-    from the way of the roller centre. With a roller "contact_pressure" (Pa), where the force is negative on a ring
-    around the pitch curve.
+    Results:
+
+    - "contact_force" (N): cam on roller along the common normal, positive outward. Where it is negative the follower
+      would lift off.
+    - `pivot_name` (N): ground on arm, a vector.
+    - "pressure_angle" (rad): angle of the contact force from the path of the roller centre.
+    - "contact_pressure" (Pa), with a roller: where the force is negative on a ring around the pitch curve.
 
     Examples
     --------

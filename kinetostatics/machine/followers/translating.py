@@ -7,8 +7,8 @@ A roller centre moves by (s' + e, -s) along the pitch curve, seen from the cam, 
 
     (s, s' + e) / sqrt(s^2 + (s' + e)^2)
 
-so the contact force leans from the guide by the pressure angle, tan = (s' + e) / s. A flat face touches the cam at -s'
-across the guide, to the left, with a force along the guide; the cam has the radius of curvature s + s'', which must
+so the contact force is inclined to the guide by the pressure angle, tan = (s' + e) / s. A flat face touches the cam at
+-s' across the guide, to the left, with a force along the guide. The cam has the radius of curvature s + s'', which must
 stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7).
 """
 
@@ -122,7 +122,7 @@ class RollerFollower(GuidedFollower):
     Parameters
     ----------
     cam : Law
-        Coordinate of the roller centre along the guide, m, from the foot of O, by the crank angle from +x: one of
+        Coordinate of the roller centre along the guide, m, from the foot of O, by the crank angle from +x. One of
         `laws`, or a function that gives position and three derivatives. `disk` is the cam that follows.
     guide : Guide
         From O outward; its offset is that of the roller centre.
@@ -140,15 +140,19 @@ class RollerFollower(GuidedFollower):
     Raises
     ------
     ParameterError
-        The law is invalid, or a value is impossible; when it is solved, the roller centre comes to the foot of O.
+        The law is invalid, or a value is impossible; when it is solved, the roller centre reaches the foot of O.
 
     Notes
     -----
-    "contact_force" (N), of the cam on the roller along the common normal, positive outward: where it is negative the
-    follower would lift off. "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment"
-    (N m) about `pin`; "guide", the same force as a vector. "pressure_angle" (rad), of the contact force from the guide;
-    "cam_radius" (m), of the roller centre from O.
-    With a roller "contact_pressure" (Pa), where the force is negative on a ring around the pitch curve.
+    Results:
+
+    - "contact_force" (N): cam on roller along the common normal, positive outward. Where it is negative the follower
+      would lift off.
+    - "guide_force" (N): ground on follower along the guide's left normal; "guide_moment" (N m): about `pin`.
+    - "guide" (N): the guide force as a vector.
+    - "pressure_angle" (rad): angle of the contact force from the guide.
+    - "cam_radius" (m): distance of the roller centre from O.
+    - "contact_pressure" (Pa), with a roller: where the force is negative on a ring around the pitch curve.
 
     Examples
     --------
@@ -241,15 +245,18 @@ class FlatFollower(GuidedFollower):
     Raises
     ------
     ParameterError
-        The law is invalid, or a value is impossible; when it is solved, the face comes to O.
+        The law is invalid, or a value is impossible; when it is solved, the face reaches O.
 
     Notes
     -----
-    "contact_force" (N), of the cam on the face, positive outward: where it is negative the follower would lift off.
-    "guide_force" (N), ground on follower along the guide's left normal, and "guide_moment" (N m) about `pin`; "guide",
-    the same force as a vector. "contact_place" (m), of the contact from O along the guide's left normal.
-    "curvature_radius" (m), of the cam there: where it is not positive, no cam gives this motion. With a face
-    "contact_pressure" (Pa), NaN where the follower would lift off.
+    Results:
+
+    - "contact_force" (N): cam on face, positive outward. Where it is negative the follower would lift off.
+    - "guide_force" (N): ground on follower along the guide's left normal; "guide_moment" (N m): about `pin`.
+    - "guide" (N): the guide force as a vector.
+    - "contact_place" (m): coordinate of the contact from O along the guide's left normal.
+    - "curvature_radius" (m): radius of the cam at the contact. Where it is not positive, no cam gives this motion.
+    - "contact_pressure" (Pa), with a face: NaN where the follower would lift off.
 
     Examples
     --------

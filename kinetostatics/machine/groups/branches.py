@@ -3,8 +3,8 @@
 The user chooses the assembly mode by the field `assembly` of a group, +1, -1, "open" or "crossed". `Branch.side` is its
 sign, which the kernels take.
 
-`Branch` keeps two facts of the structure: `passage`, the kind of change points that the branch passes, and `is_close`,
-whether the group comes so close to a limit position that the kernels of `near_dead_centre` are needed.
+`Branch` keeps two facts of the structure. `passage` is the kind of change points that the branch passes. `is_close`
+is True if the group comes so close to a limit position that it needs the kernels of `near_dead_centre`.
 """
 
 import math
@@ -163,7 +163,7 @@ class Branch:
         )
 
     def _first(self: Any, throws):
-        """Crank angle at which its pin stands in the direction `start`, rad."""
+        """Crank angle at which its pin is in the direction `start`, rad."""
         x, y = rotate_back(self.start, throws[self.on].polar[1])
         return math.atan2(y, x)
 

@@ -208,7 +208,7 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
 def slid(placement, on, coupler_length, guide, passage, side):
     """Reach of a coupler along the guide, rate of the coupler and its slope, divisor, and closure (kernel).
 
-    With psi from the right normal of the guide the coupler stands at right angles to it where cos(psi/2) ("far") or
+    With psi from the right normal of the guide the coupler is perpendicular to it where cos(psi/2) ("far") or
     sin(psi/2) ("near") vanishes. The divisor is a factor and the distance from the change points.
     """
     kind, facing = parse_passage(passage)
@@ -233,8 +233,8 @@ def slotted(placement, on, pivot, offset, passage, side):
     The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. The divisor is the reach, as
     a factor and the distance from the change point.
 
-    With the pivot at the distance d the rates have one more divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares
-    by a quarter of the angle: it is small where A passes close by the pivot.
+    With the pivot at the distance d the rates have another divisor, (a+d)/2 +- sqrt(a d) cos(psi/2). It is a sum of
+    squares by a quarter of the angle. It is small where A passes close by the pivot.
     """
     kind, facing = parse_passage(passage)
     a, ahead = placement.course(on).throw.polar

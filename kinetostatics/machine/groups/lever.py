@@ -1,14 +1,14 @@
 """Lever group (RPR): block on a pin, sliding in a slotted lever about a fixed pivot; and its inversion, the cylinder.
 
-With d the vector from the pivot to the pin, the slot at offset e left of the pivot carries the pin at s along it,
-s = +-sqrt((|d| - e)(|d| + e)), and the lever's direction is d (s - i e) / |d|^2 in complex numbers. No angle is formed,
-and s is a product, so it keeps its digits near zero, where it divides rates and forces.
+Let d be the vector from the pivot to the pin. The slot at offset e left of the pivot carries the pin at s along it, s =
++-sqrt((|d| - e)(|d| + e)). The lever's direction is d (s - i e) / |d|^2 in complex numbers. No angle is formed, and s
+is a product, so it keeps its digits near zero, where it divides rates and forces.
 
 Where the crank is as long as the pivot's distance, A meets the pivot. On a chosen side the lever reverses there; the
 words "open" and "crossed" carry the block to the other side of the pivot (`change_points`).
 
-The swinging cylinder is the inversion of the lever, without offset: its rod points at the pivot, about which the
-couple of the pair is taken.
+The swinging cylinder is the inversion of the lever, without offset: its rod points at the pivot, the
+reference point for the couple of the pair.
 """
 
 from dataclasses import dataclass
@@ -178,8 +178,8 @@ class LeverGroup(RPRGroup):
     With the pivot outside the circle of the pin the lever rocks; inside it the lever makes full turns. The distance
     from pivot to pin must stay above the offset.
 
-    With the pivot on the circle of the pin, or as far from it as the offset, the lever has a change point, where the
-    block stands at the foot of the pivot on the slot, or at the pivot.
+    With the pivot on the circle of the pin, or as far from it as the offset, the lever has a change point. There the
+    block is at the foot of the pivot on the slot, or at the pivot.
 
     Parameters
     ----------
@@ -208,10 +208,13 @@ class LeverGroup(RPRGroup):
 
     Notes
     -----
-    Reactions: `on` (N) on the block, from the link that carries the joint; `pivot_name` (N), ground on lever;
-    "slot_force" (N), lever on block along the lever's left normal, and "slot_moment" (N m) about `on`.
-    "block_position" (m) is the coordinate of the block along the slot, from the foot of the pivot; negative where the
-    slot points away from the block.
+    Results:
+
+    - `on` (N): on the block, from the link that carries the joint.
+    - `pivot_name` (N): ground on lever.
+    - "slot_force" (N): lever on block along the lever's left normal; "slot_moment" (N m): about `on`.
+    - "block_position" (m): coordinate of the block along the slot, from the foot of the pivot; negative where the slot
+      points away from the block.
 
     Attach further groups to a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
 
@@ -302,9 +305,12 @@ class CylinderGroup(RPRGroup):
 
     Notes
     -----
-    Reactions: `on` (N) on the rod, from the link that carries the joint; `pivot_name` (N), ground on cylinder;
-    "cylinder_force" (N), cylinder on rod along the cylinder's left normal, and "cylinder_moment" (N m) about the pivot.
-    "cylinder_length" (m) is the distance from pivot to pin.
+    Results:
+
+    - `on` (N): on the rod, from the link that carries the joint.
+    - `pivot_name` (N): ground on cylinder.
+    - "cylinder_force" (N): cylinder on rod along the cylinder's left normal; "cylinder_moment" (N m): about the pivot.
+    - "cylinder_length" (m): distance from pivot to pin.
 
     Examples
     --------

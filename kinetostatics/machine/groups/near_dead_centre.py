@@ -1,31 +1,31 @@
 """Kernels for groups on a pin of the crank that save digits near a limit position or dead centre.
 
-*Four-bar.* With S = sin^2(psi/2), C = cos^2(psi/2), psi the crank angle from O -> O2, the sine of the transmission
-angle is for crank a, coupler b, rocker h and ground d the root of two factors, with e from A to O2 (Heron),
+*Four-bar.* Let S = sin^2(psi/2), C = cos^2(psi/2), with psi the crank angle from O -> O2, crank a, coupler b, rocker h
+and ground d. The sine of the transmission angle is the root of two factors, with e from A to O2 (Heron),
 
-    2 b h far  = (b+h)^2 - e^2 = ((b+h)^2 - (d-a)^2) C + ((b+h)^2 - (d+a)^2) S
-    2 b h near = e^2 - (b-h)^2 = ((d-a)^2 - (b-h)^2) C + ((d+a)^2 - (b-h)^2) S
+    2 b h far    = (b+h)^2 - e^2 = ((b+h)^2 - (d-a)^2) C + ((b+h)^2 - (d+a)^2) S
+    2 b h near   = e^2 - (b-h)^2 = ((d-a)^2 - (b-h)^2) C + ((d+a)^2 - (b-h)^2) S
 
 C and S are quarters of squared distances of the crank ray, so a small one keeps its digits. Brackets are products of
 sums of given lengths, each rounded once: near a zero the error is that of one rounding of the crank angle. A length
-that is a root itself goes with the rest that rounding took off it. Rates and their slopes have the same factors,
+that is a root itself comes with the remainder of its rounding. Rates and their slopes have the same factors,
 
     theta' = 1/2 - (d^2 - a^2) / (2 e^2) -+ (1 -+ (b^2 - h^2) / e^2) R,    R = a d sin(psi) / (2 b h sine)
     R' = a d / (2 b h sine^3) (((d-a)^2 - (b-h)^2) C far - ((b+h)^2 - (d+a)^2) S near) / (2 b h)
 
 with the upper signs for the coupler, the lower ones for the rocker.
 
-*Elongation.* A length l that leans from a line reaches l less l (1 - cos) = l sin^2 / (1 + cos), small near a dead
-centre; so the coordinate of a slider less a position loses no digits there.
+*Elongation.* A length l inclined to a line reaches l less l (1 - cos) = l sin^2 / (1 + cos), small near a dead
+centre. So the coordinate of a slider less a position loses no digits there.
 
 *Toggle.* A rocker with a slider on its pin that moves along a line through its pivot, as the ram of a toggle press. The
-distance of the pin from that line decides the force. With the line along one axis, and on the other one the coordinates
-g of the pivot and A of the inner joint, and components q and e of the coupler's direction, b its length,
+distance of the pin from that line decides the force. Let the line be along one axis, g and A the coordinates of the
+pivot and the inner joint on the other axis. The coupler has the length b and the direction (q, e). Then
 
     b q - g + A = (+-b - g) + A - b e^2 / (+-1 + q)
 
-by the sign of q. It is used where the coupler leans little and is not much longer than the rocker. The designs of a
-batch use the same formulas, so a design may change in its last bits with its batch.
+by the sign of q. It is used where the coupler is inclined little and is not much longer than the rocker. The designs of
+a batch use the same formulas, so a design may change in its last bits with its batch.
 """
 
 from typing import Any, NamedTuple
@@ -95,9 +95,9 @@ TERMS = {
 class PivotFromPin(NamedTuple):
     """Line `d` from a pin of the crank to a pivot, and its squared length.
 
-    `radius` and `ground` go from O to pin and pivot; `slack` and `rest` are their rounding errors, `gap` is
-    their difference. From the direction of the pivot, as a vector of length `reach`, `turn` is its cross product with
-    the crank ray, `near_by` and `far_off` are squared distances of its tip and its opposite from the ray's tip.
+    `radius` and `ground` go from O to pin and pivot; `slack` and `rest` are their rounding errors, `gap` is their
+    difference. The direction of the pivot is a vector of length `reach`. `turn` is its cross product with the crank
+    ray, `near_by` and `far_off` are squared distances of its tip and its opposite from the ray's tip.
     """
 
     radius: Any
@@ -191,8 +191,8 @@ def place(placement, on, coupler_length, rocker_length, pivot, assembly, is_clos
 def slid(placement, on, coupler_length, guide, assembly):
     """Reach of a coupler along the guide, its rate and the slope of that, divisor, and closure (kernel).
 
-    With y the sine of the crank angle from the guide, an offset e and a coupler l on a crank r the factors of closure
-    are l - e + r y and l + e - r y over l, with the weights (1 + y) / 2 and (1 - y) / 2.
+    Let y be the sine of the crank angle from the guide, e the offset, l the coupler and r the crank. The factors of
+    closure are l - e + r y and l + e - r y over l, with the weights (1 + y) / 2 and (1 - y) / 2.
     """
     throw = placement.course(on).throw
     (r, ahead), slack = throw.polar, throw.radius_and_rest[1]

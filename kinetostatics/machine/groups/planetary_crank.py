@@ -1,7 +1,7 @@
 """Planetary crank: a planet on the crank pin rolls in a fixed ring of twice its size (Cardan circles).
 
 The crank is the arm, of length a; the pitch circles of planet and ring have the radii a and 2 a. At the arm's angle phi
-from the line the planet stands at -phi. In the axes of the line its pin, at the radius b, stands at
+from the line the planet has the angle -phi. In the axes of the line its pin, at the radius b, has the coordinates
 
     a (cos phi, sin phi) + b (cos phi, -sin phi) = ((a + b) cos phi, (a - b) sin phi)
 
@@ -89,7 +89,7 @@ class PlanetaryCrank(checks.Checked, Group):
     on, pin : str
         Names of the crank pin, and of the pin that it adds.
     planet : Link
-        Reference joint `on`, along its direction to the pin; a counterweight stands at a negative distance.
+        Reference joint `on`, along its direction to the pin; a counterweight has a negative distance.
     label : str
         Appended to the names of links and forces of a second planet in one mechanism.
     plane : float or array, optional
@@ -102,9 +102,14 @@ class PlanetaryCrank(checks.Checked, Group):
 
     Notes
     -----
-    Reactions: `on` (N) on the planet, from the arm; "mesh" (N), ring on planet, at the pitch point; "tooth_force" (N),
-    its tangential part, positive counter-clockwise about O. The other part, its size times the tangent of the pressure
-    angle, presses the planet off the ring. The teeth have no friction and no play.
+    Reactions:
+
+    - `on` (N): on the planet, from the arm.
+    - "mesh" (N): ring on planet, at the pitch point.
+    - "tooth_force" (N): its tangential part, positive counter-clockwise about O. The other part, its size times the
+      tangent of the pressure angle, presses the planet off the ring.
+
+    The teeth have no friction and no play.
 
     Examples
     --------

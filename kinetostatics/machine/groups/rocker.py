@@ -1,9 +1,9 @@
 """RRR groups: coupler from a pin to a rocker about a fixed pivot, in either assembly; dyad between two moving joints.
 
-With d the vector from joint A to the pivot O2, a = |d|, coupler length c and rocker length h, joint B stands from A at
-(a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d), where area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four times
-that of the triangle A B O2 (Heron). The sine of the transmission angle, which divides all rates and forces, is
-area / (2 c h): a product of lengths, so no digit is lost near a toggle, where it vanishes.
+Let d be the vector from joint A to the pivot O2, a = |d|, c the coupler length and h the rocker length. Joint B is from
+A at (a^2 + c^2 - h^2) / (2 a^2) d +- area / (2 a^2) left(d). Here area = sqrt((a+c+h)(a+c-h)(a-c+h)(c+h-a)) is four
+times that of the triangle A B O2 (Heron). The sine of the transmission angle, which divides all rates and forces, is
+area / (2 c h). It is a product of lengths, so no digit is lost near a toggle, where it vanishes.
 
 On a chosen side the motion has a kink at a change point; the words "open" and "crossed" pass it (`change_points`).
 
@@ -224,8 +224,11 @@ class RockerGroup(Branch, RRRGroup):
 
     Notes
     -----
-    Reactions, vectors in N: `on` on the coupler, from the link that carries the joint; `pin`, coupler on rocker;
-    `pivot_name`, ground on rocker.
+    Reactions, vectors in N:
+
+    - `on`: on the coupler, from the link that carries the joint.
+    - `pin`: coupler on rocker.
+    - `pivot_name`: ground on rocker.
 
     Examples
     --------
@@ -309,7 +312,7 @@ class RockerGroup(Branch, RRRGroup):
         return {RHOMBUS: far & meeting, KITE: both & kite, PARALLEL: both, FAR: far, MEETING: meeting, NEAR: near}
 
     def beside(self, groups, throws):
-        """The group with the axis of the toggle that it is with a slider beside it, or with its passage on a rocker."""
+        """The group with the axis of its toggle if a slider is on its pin, or with its passage on a rocker."""
         throw, toggle = throws.get(self.on), ""
         if throw is not None:
             guides = [guide for other in groups if self.pin in other.hangs_on for guide in other.guides.values()]
@@ -381,8 +384,11 @@ class Dyad(RRRGroup):
 
     Notes
     -----
-    Reactions, vectors in N: "dyad1_B" on the first link, from the link that carries B (its joint in `on`),
-    "dyad2_C" on the second likewise, and `pin`, of the first link on the second.
+    Reactions, vectors in N:
+
+    - "dyad1_B": on the first link, from the link that carries B (its joint in `on`).
+    - "dyad2_C": on the second link, from the link that carries C.
+    - `pin`: first link on second.
 
     Examples
     --------

@@ -1,10 +1,10 @@
 """Slider group (RRP): coupler from a pin to a slider on a straight guide, in either assembly.
 
-With the guide along the unit vector u, left normal n, at offset e, a coupler of length l from joint A reaches
-d = e - A.n across the guide and +-sqrt((l - d)(l + d)) along it. No angle is formed, so dead centres need no special
-treatment at any inclination of the guide.
+The guide has the direction u, the left normal n and the offset e. A coupler of length l from joint A reaches d = e -
+A.n across the guide and +-sqrt((l - d)(l + d)) along it. No angle is formed, so dead centres need no special treatment
+at any inclination of the guide.
 
-Where l = r + |e| on a crank r, the coupler comes to stand across the guide. On a chosen side the slider turns back
+Where l = r + |e| on a crank r, the coupler becomes perpendicular to the guide. On a chosen side the slider turns back
 there, the words "open" and "crossed" let it run on (`change_points`).
 """
 
@@ -142,9 +142,11 @@ class SliderGroup(checks.Checked, Branch, Group):
 
     Notes
     -----
-    Reactions, vectors in N: `on` on the coupler, from the link that carries the joint; `pin`, coupler on slider;
-    "guide", ground on slider. "guide_force" (N) is that along the guide's left normal, "guide_moment" (N m) about
-    `pin`.
+    Reactions, vectors in N:
+
+    - `on`: on the coupler, from the link that carries the joint.
+    - `pin`: coupler on slider.
+    - "guide": ground on slider; "guide_force" (N): along the guide's left normal; "guide_moment" (N m): about `pin`.
 
     Examples
     --------

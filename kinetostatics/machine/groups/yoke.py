@@ -1,7 +1,7 @@
 """Yoke group (RPP): block on a pin, sliding in the straight slot of a slider on a straight guide (Scotch yoke).
 
-In the axes of the guide, at offset e, a slot at the angle beta through joint A at (x, y) meets the guide at
-x - (y - e) cot(beta): the travel is linear in the motion of A, so there is neither dead centre nor limit position.
+In the axes of the guide, at offset e, a slot at the angle beta through joint A at (x, y) meets the guide at x - (y - e)
+cot(beta). The travel is linear in the motion of A, so there is neither dead centre nor limit position.
 """
 
 from dataclasses import dataclass
@@ -85,7 +85,7 @@ def resolve(motion, guide, block_load, slider_load, push):
 class YokeGroup(checks.Checked, Group):
     """Block on joint `on` in the slot of a slider on `guide`: a Scotch yoke.
 
-    The slider's joint `pin` stands where the line through `on` along the slot meets the guide.
+    The slider's joint `pin` is where the line through `on` along the slot meets the guide.
 
     Parameters
     ----------
@@ -110,9 +110,12 @@ class YokeGroup(checks.Checked, Group):
 
     Notes
     -----
-    Reactions: `on` (N) on the block, from the link that carries the joint; "slot_force" (N), slider on
-    block along the slot's left normal, and "slot_moment" (N m) about `on`; "guide_force" (N), ground on slider along
-    the guide's left normal, and "guide_moment" (N m) about `pin`; "guide", the same force as a vector.
+    Results:
+
+    - `on` (N): on the block, from the link that carries the joint.
+    - "slot_force" (N): slider on block along the slot's left normal; "slot_moment" (N m): about `on`.
+    - "guide_force" (N): ground on slider along the guide's left normal; "guide_moment" (N m): about `pin`.
+    - "guide" (N): the guide force as a vector.
 
     Examples
     --------

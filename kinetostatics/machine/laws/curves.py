@@ -1,8 +1,8 @@
 """Standard rises of cam design, from 0 to 1 over an angle of 1, with three exact derivatives.
 
-The sine-constant-cosine family (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 3) holds the harmonic,
-cycloidal, modified sine (Neklutin) and modified trapezoid curves; sums of powers hold the 3-4-5 and 4-5-6-7
-polynomials (Rothbart, *Cam Design Handbook*, 2004, chapter 3).
+The sine-constant-cosine family (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 3) includes the
+harmonic, cycloidal, modified sine (Neklutin) and modified trapezoid curves. Sums of powers include the 3-4-5 and
+4-5-6-7 polynomials (Rothbart, *Cam Design Handbook*, 2004, chapter 3).
 """
 
 import math

@@ -1,7 +1,7 @@
 """Law of motion: a position over the turn, a function of the crank angle, with three exact derivatives.
 
-``law(phi)`` returns position, velocity, acceleration and jerk by phi (m, m/rad, m/rad2, m/rad3). Here stand the base
-`Law`, its shift by a phase, laws in Chebyshev polynomials on panels, and the checks of a user's own law.
+``law(phi)`` returns position, velocity, acceleration and jerk by phi (m, m/rad, m/rad2, m/rad3). This module has the
+base `Law`, its shift by a phase, laws in Chebyshev polynomials on panels, and the checks of a user's own law.
 """
 
 from dataclasses import dataclass

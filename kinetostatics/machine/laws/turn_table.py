@@ -68,9 +68,9 @@ class TurnTable:
         if self.force_error >= 0.01:
             remedy = ", or state their noise to have them smoothed" if noise is None else ""
             self._warn(
-                f"{angle.size} points are too coarse or too noisy: {self.SECOND} is uncertain by up to "
+                f"{angle.size} points are too coarse or too noisy. {self.SECOND} is uncertain by up to "
                 f"{self.second_derivative_error:.2g} m (the {self.VALUES} scatter by {self.noise:.2g} m about a smooth "
-                f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced; measure more exactly, "
+                f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced. Measure more exactly, "
                 f"write more digits{remedy}",
                 stacklevel=4,
             )
@@ -81,7 +81,7 @@ class TurnTable:
         if self._fit(self.values) is None:
             raise ParameterError(
                 f"{self.OWNER}: no smooth curve comes within a noise of {stated:.3g} m of the {self.VALUE} values, "
-                f"which scatter by {scatter:.3g} m; state the noise that they have, or none to pass through every point"
+                f"which scatter by {scatter:.3g} m. State the noise that they have, or none to pass through every point"
             )
         if not scatter / MAX_NOISE_RATIO <= stated <= scatter * MAX_NOISE_RATIO:
             more = stated > scatter
@@ -115,8 +115,9 @@ class TurnTable:
     def noise(self):
         """Standard deviation of the values about a smooth curve; for values rounded to a step, 0.29 of the step.
 
-        From the root mean square distance of the values from polynomials through `reach` neighbours on both sides, with
-        the reach that gives the smallest; scaled to the standard deviation of independent noise in every value.
+        It follows from the root mean square distance of the values from polynomials through `reach` neighbours on both
+        sides, for the reach with the smallest distance. It is scaled to the standard deviation of independent noise in
+        every value.
         """
         angle, values, size, found = self.angle, self.values, self.angle.size, []
         for reach in range(2, min(7, (size + 1) // 2)):
@@ -136,8 +137,8 @@ class TurnTable:
         """Expected largest error of the second derivative over the turn, from noise and coarseness of the table.
 
         The spline through every second point has 2^4 times the truncation error, so the difference of both splines
-        bounds noise and truncation, and a twelfth of it (1/15 and a margin for coarse tables) the truncation. Noise is
-        bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
+        bounds noise and truncation. A twelfth of it (1/15 and a margin for coarse tables) bounds the truncation. Noise
+        is bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
         """
         nodes, _ = _periodic(self.angle, self.values)
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)

@@ -1,7 +1,7 @@
 """Balance shafts: unbalanced rotors geared to the crank (Lanchester), as loads on crank and frame.
 
-A shaft at the ratio n turns by n phi + phase. With the unbalance U, the unit vector u from the axis to it, the inertia
-J about the axis, the pull of gravity g, crank speed omega and acceleration alpha, and left(u) a quarter turn ahead of u
+A shaft at the ratio n turns by n phi + phase. U is the unbalance, u the unit vector from the axis to it, J the inertia
+about the axis, and left(u) a quarter turn ahead of u. With gravity g, crank speed omega and acceleration alpha
 
     inertia force on the frame       F = U (n^2 omega^2 u - n alpha left(u))
     moment about its axis        tau = U u x g - J n alpha
@@ -92,8 +92,7 @@ class BalanceShaft(Load):
     Raises
     ------
     ParameterError
-        A value is not a finite number, or is negative without meaning; the ratio is 0, above 100, or not such a
-        fraction.
+        A value is not a finite number, or is negative without meaning. The ratio is 0, above 100, or another fraction.
 
     Examples
     --------

@@ -49,7 +49,7 @@ def _dead_centres(mechanism, slider):
         if still.any():
             raise ParameterError(
                 f"a stroke needs a slider that goes to and fro, but {slider!r} of {mechanism.name} stands still on a "
-                "part of the turn, where a force against its motion has no sense, and its dead centre no crank angle",
+                "part of the turn. There a force against its motion has no sense, and its dead centre no crank angle",
                 still if first.ndim > 1 else None,
             )
         angle = np.full((*closes.shape, 2), np.nan)

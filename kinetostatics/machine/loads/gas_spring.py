@@ -1,7 +1,7 @@
 """Gas enclosed between the frame and a slider: pressure p V^n = const over its piston area.
 
-With s the slider's coordinate along its guide, s0 the position at which volume V0 and absolute pressure p0 are given,
-A the piston area and d = +1 or -1 the direction in which the gas pushes,
+Let s be the slider's coordinate along its guide, s0 the position of the given volume V0 and absolute pressure p0, A the
+piston area. The gas pushes in the direction d = +1 or -1:
 
     V = V0 + d A (s - s0)        force = d A (p - p_a)        p = p0 exp(n L),  L = log(V0 / V)
 
@@ -66,7 +66,7 @@ class GasSpring(SliderLoad):
     Raises
     ------
     ParameterError
-        A value is not a finite number, or out of its range; when a scene is made, the slider is unknown; when it is
+        A value is not a finite number, or out of its range. When a scene is made, the slider is unknown; when it is
         solved: no gas volume is left at some crank angles, which the message lists.
 
     Warns
@@ -166,8 +166,8 @@ class GasSpring(SliderLoad):
             )
             yield checks.Problem(
                 f"{self.title}: no volume is left at {angle.size} crank angles, {'the first ' * (angle.size > 3)}"
-                f"{many} deg; its {given:.6g} m3 at {at:.6g} m end at {at - self.side * given / area:.6g} m, but the "
-                f"slider goes on by up to {-left / area:.6g} m; give more volume or less area, or the other side",
+                f"{many} deg. Its {given:.6g} m3 at {at:.6g} m end at {at - self.side * given / area:.6g} m, but the "
+                f"slider goes on by up to {-left / area:.6g} m. Give more volume or less area, or the other side",
                 gone,
             )
 

@@ -190,8 +190,8 @@ class Force(PlacedLoad):
     value : float, array, Table or function
         N; an array has one value for each crank angle, a function takes the `Motion` and returns values of this shape.
     at : point
-        Joint such as "B", a place on a link, ("coupler", along, across), in m and in the axes of mass centres, or a
-        fixed point (x, y), where the frame takes the force. A joint stands for the link that owns it
+        Joint such as "B"; place on a link, ("coupler", along, across), in m and in the axes of mass centres; or fixed
+        point (x, y). At a fixed point the frame takes the force. A joint stands for the link that owns it
         (``mechanism.joints``), a fixed pivot for the link that turns about it.
     direction : float
         Angle of the force, rad, counter-clockwise from +x, or from the axis of the link `along`.

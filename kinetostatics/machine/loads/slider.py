@@ -1,18 +1,18 @@
 """Loads on a slider along its guide: spring and process force; positive in the direction of the guide.
 
-Between its foot on the frame and its end on the slider a uniform spring of mass m stretches evenly, so that its
-point at a share h of its length moves at h times the slider's speed v. Hence, as integrals over h from 0 to 1,
+Between its foot on the frame and its end on the slider a uniform spring of mass m stretches evenly. Its point at a
+share h of its length moves at h times the slider's speed v. Hence, as integrals over h from 0 to 1,
 
     kinetic energy  m v^2 / 6        momentum  m v / 2        potential energy of its weight  -m g . B / 2
 
-A third of m is in the slider's equation of motion, half of m in the shaking force and in the weight on the slider; the
+A third of m is in the slider's equation of motion, half of m in the shaking force and in the weight on the slider. The
 foot carries the other half of the weight. With c e the elastic force, a the slider's acceleration and g_u the component
 of gravity along the guide, the spring pushes along the guide
 
     the slider by  -c e - m a / 3 + m g_u / 2        the frame by  c e - m a / 6 + m g_u / 2
 
 The sum is minus the change of its momentum, m a / 2, plus its weight. At harmonic n of a crank speed w the end of a
-spring with waves has the stiffness c z cot z, z = n w sqrt(m / c) (`surge`); c - m (n w)^2 / 3 is the start of its
+spring with waves has the stiffness c z cot z, z = n w sqrt(m / c) (`surge`). Here c - m (n w)^2 / 3 is the start of its
 series.
 """
 
@@ -139,9 +139,9 @@ class Spring(SliderLoad):
         """Spring that balances the inertia force of a slider with a cosine law.
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
-        A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included: that is
-        z tan z = m / M, with one root below pi / 2 for every m and M. A scene neglects the waves, so in
-        a scene the end of the spring is stiffer by c z^4 / 45 and more.
+        A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included. That is
+        z tan z = m / M, with one root below pi / 2 for every m and M. A scene neglects the waves, so in a scene the end
+        of the spring is stiffer by c z^4 / 45 and more.
 
         Parameters
         ----------
@@ -284,24 +284,24 @@ class ProcessForce(WorkForce):
     Parameters
     ----------
     force : float, array, Table or function
-        N; an array has one value for each crank angle; a `Table` is read by crank angle or travel; a function takes
-        the `Motion` and returns values that depend, angle by angle, on crank angle, position or velocity. The function
-        must be pure, without counters, random numbers or clocks, because engines call it any number of times. The
-        compiled engine compiles its constants; other constants need a new compilation.
+        N. An array has one value for each crank angle; a `Table` is read by crank angle or travel. A function takes the
+        `Motion` and returns values that depend, angle by angle, on crank angle, position or velocity. The function must
+        be pure, without counters, random numbers or clocks, because engines call it any number of times. The compiled
+        engine compiles its constants; other constants need a new compilation.
     on : str
         Slider on which it acts.
     period : float, optional
         Period of the force, rad: 4 pi for a four-stroke engine. By default the period of its `Table`, else 2 pi.
     reaction : "outside" or "frame"
-        Body that takes the opposite force. "outside": an external body, such as the ground in which a mower's crop
-        stands. "frame": the frame of the machine, such as a saw whose rollers carry the log, or an engine whose
-        cylinder takes the gas pressure. It affects only the forces on the frame (`Solution.ground`).
+        Body that takes the opposite force. It is "outside" for an external body, such as the ground of a mower's crop.
+        It is "frame" for the machine's frame: of a saw, whose rollers carry the log, or of an engine, whose cylinder
+        takes the gas pressure. It affects only the forces on the frame (`Solution.ground`).
 
     Raises
     ------
     ParameterError
-        A value is not a finite number, or the period not a whole number of turns, or the reaction is neither of these;
-        when a scene is made, the slider is unknown.
+        A value is not a finite number, or the period not a whole number of turns, or the reaction is neither of these.
+        When a scene is made, the slider is unknown.
 
     Examples
     --------

@@ -1,6 +1,6 @@
 """Waves in a spring of mass between its foot and a slider.
 
-The displacement u(h, t) of a uniform spring of stiffness c and mass m, at the share h of its length, obeys the wave
+A uniform spring of stiffness c and mass m has the displacement u(h, t) at the share h of its length. It obeys the wave
 equation m u_tt = c u_hh (Wahl, *Mechanical Springs*, 1963, chapter 13). With its foot at rest and its end moving as
 sin(s t) it is u = sin(z h) / sin(z) sin(s t), z = s sqrt(m / c). The end pushes back with c u_h at h = 1:
 

@@ -73,7 +73,7 @@ class Table:
     ------
     ParameterError
         Over the angle: fewer than three rows, angles that do not rise, rows over more or less than a period, unequal
-        ends; over travel: fewer than two rows, coordinates that do not rise. When a scene is made: a dead centre, or
+        ends. Over travel: fewer than two rows, coordinates that do not rise. When a scene is made: a dead centre, or
         travel, of none or several sliders. When it is solved: the slider leaves the table; it has not one far and one
         near dead centre, or the mechanism does not close all round.
 
@@ -135,7 +135,7 @@ class Table:
             arrays = {name: np.array(values, dtype=float) for name, values in found.items()}
         except TypeError as error:
             raise ParameterError(
-                "table: its rows have no values yet, as under jax.jit or jax.grad: give plain numbers, and let JAX "
+                "table: its rows have no values yet, as under jax.jit or jax.grad. Give plain numbers, and let JAX "
                 "trace crank angles and numbers of the mechanism; tables have no derivatives by their rows"
             ) from error
         shapes = {values.shape for values in arrays.values()}
@@ -348,8 +348,8 @@ class Table:
             angle = np.degrees(np.broadcast_to(motion.crank_angle, out.shape)[out])
             raise ParameterError(
                 f"table over travel: the slider goes from {np.nanmin(place):.9g} to {np.nanmax(place):.9g} m, but the "
-                f"table from {self.x[0]:.9g} to {self.x[-1]:.9g} m; beyond it at {angle.size} crank angles, the first "
-                f"{angle[0]:.6g} deg; travel is the coordinate of the pin along the guide (solution.slider_position)",
+                f"table from {self.x[0]:.9g} to {self.x[-1]:.9g} m. Beyond it at {angle.size} crank angles, the first "
+                f"{angle[0]:.6g} deg. Travel is the coordinate of the pin along the guide (solution.slider_position)",
                 out.any(axis=-1) if out.ndim > 1 else None,
             )
         if self.by_sense:

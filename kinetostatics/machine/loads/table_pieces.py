@@ -115,8 +115,8 @@ def angle_problem(angle, value, period):
     if rest > 1.5 * step.max():
         return (
             f"rows are missing: they end at {_degrees(angle[-1])}, {_degrees(rest)} before the next begins at "
-            f"{_degrees(angle[0] + period)} (period {_degrees(period)}); if the values run straight between them "
-            f"repeat the first row at {_degrees(angle[0] + period)}; are the angles in the unit of their heading?"
+            f"{_degrees(angle[0] + period)} (period {_degrees(period)}). If the values run straight between them, "
+            f"repeat the first row at {_degrees(angle[0] + period)}. Are the angles in the unit of their heading?"
         )
     wide = (step > max(5 * float(np.median(step)), math.radians(20.0))) & (np.diff(value) != 0)
     if np.any(wide):
@@ -291,7 +291,7 @@ def _roots(function, low, high):
     if not low.size:
         return low
     root = find_roots(values, low, high, 1e-13)
-    return np.where(np.isnan(root), low, root)  # an end that is a zero but for rounding
+    return np.where(np.isnan(root), low, root)  # an end that is zero within rounding
 
 
 # Rounding errors

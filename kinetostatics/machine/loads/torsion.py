@@ -175,7 +175,7 @@ class TorsionSpring(Couple):
     """Linear torsion spring between a link and the frame, or another link.
 
     Its couple on the link is `moment` less `stiffness` times the angle of the link from `free_angle`, counter-clockwise
-    and in (-pi, pi]; the angle would jump for a link that passes half a turn from there.
+    and in (-pi, pi]. The angle would jump for a link that passes half a turn from there.
 
     Parameters
     ----------

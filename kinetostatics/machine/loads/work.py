@@ -4,10 +4,9 @@ A log that advances by D for each cutting stroke S leaves n saws, b wide, the vo
 work K for a volume the force is F = K n b H D / S over the whole stroke, if saw and log move in proportion.
 
 At mid-stroke the sections of a knife stand midway between two fingers. u is the distance of a section from the finger
-behind, p the pitch. The edge of a section, half widths w(y), meets the edge of the finger ahead, f(y), where
-u = p - w - f: from `start` at the foot of the edges to `end` at their tips. It cuts where
-sin(pi (u - start) / p) sin(pi (u - end) / p) < 0. Stalks at even distances between straight edges make the force
-constant.
+behind, p the pitch. The edge of a section, half widths w(y), meets the edge of the finger ahead, f(y), at u = p - w -
+f. This is from `start` at the foot of the edges to `end` at their tips. It cuts where sin(pi (u - start) / p) sin(pi (u
+- end) / p) < 0. Stalks at even distances between straight edges make the force constant.
 """
 
 import math
@@ -231,8 +230,8 @@ class Mowing(StrokeForce):
     pitch : float or array
         Distance of two fingers, m. A knife with a longer stroke passes several.
     start, end : float or array
-        Distances of a section from the middle of the finger that it leaves, m, between which it cuts at the next one:
-        ``pitch`` less half the widths of section and finger, at the foot of their edges and at their tips.
+        Distances of a section from the middle of the finger that it leaves, m; between them it cuts at the next finger.
+        They are ``pitch`` less half the widths of section and finger, at the foot of their edges and at their tips.
     on : str
         Slider that carries the knife.
     reaction : "frame" or "outside"
@@ -242,7 +241,7 @@ class Mowing(StrokeForce):
     Raises
     ------
     ParameterError
-        The force is negative, or not ``0 <= start < end <= pitch``; when a scene is made, the slider is unknown; when
+        The force is negative, or not ``0 <= start < end <= pitch``. When a scene is made: the slider is unknown. When
         it is solved: the slider does not reciprocate once in a turn, or stands still in an unknown sense.
 
     Examples

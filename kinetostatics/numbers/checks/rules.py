@@ -279,7 +279,7 @@ class OrFunction:
 
 @dataclass(frozen=True)
 class InstanceOf:
-    """An instance of a class; the message says `words`."""
+    """An instance of a class; the message quotes `words`."""
 
     kind: type
     words: str
@@ -454,7 +454,7 @@ def single_number(name, value, unit, *, high=None, unequal=None, **rule):
 def single_numbers(owner, *problems, **given):
     """Single numbers by name, each given as (value, unit, rule); one `ParameterError` with all faults.
 
-    A rule may give another name for messages. One `HintWarning` asks about implausible numbers.
+    A rule may give another name for messages. One `HintWarning` reports implausible numbers.
     """
     found = {
         field: single_number(value=value, unit=unit, **{"name": field} | rule)

@@ -41,8 +41,8 @@ class Method:
     name : str
         Name in charts and tables.
     prepare : function
-        ``prepare(solution, quantity, setting)`` does the work needed once per mechanism and returns a function
-        without arguments: it computes the quantity at the solution's crank angles, as a tuple of its components (see
+        ``prepare(solution, quantity, setting)`` does the work needed once per mechanism and returns a function without
+        arguments. This function computes the quantity at the solution's crank angles, as a tuple of its components (see
         `quantities.components`). `prepare` raises `NotGivenError` for quantities that the method does not give.
     setting : str
         Name of the parameter that trades time for accuracy, with its unit; empty if there is none.

@@ -147,9 +147,9 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
 def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_x, angle):
     """Angular accelerations of coupler and rocker of the chain unit by the study's equations (11)-(14), (19)-(22).
 
-    Each is a sum of two derivatives: of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2 and
-    (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they follow from
-    its derivation. The relative forms are the same with the lengths rho, 1, lambda and sqrt(1 - rho^2).
+    Each is a sum of two derivatives. They are of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2
+    and (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they follow from its
+    derivation. The relative forms are the same with the lengths rho, 1, lambda and sqrt(1 - rho^2).
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_
 def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, assembly, angle):
     """Coupler and rocker of any four-bar by the formulas of `chain_unit_by_atan_acos`, and their accelerations.
 
-    The x axis is turned into the frame line O-O2, so that f2 and f5 of the study are the same; the rates are
+    The x axis is turned into the frame line O-O2, so that f2 and f5 of the study are the same. The rates are
     differentiated once more, as in the study. The formulas hold while b - r cos(phi) > 0.
 
     Parameters
@@ -300,9 +300,9 @@ EQUILIBRIUM, PRINTED = 1.0, -1.0
 class RollerByAngles(CamRoller):
     """Cam roller by the sawframe study: cam and slot force from size and direction of the load R42 on the block.
 
-    R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu, and
-    R41 = R42 sin(phi - alpha42) + R40 sin(nu) across the ray, at phi + 90 deg. The study prints R41 with a minus, with
-    which the sum of the three forces on the block is not zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
+    R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu. R41 = R42 sin(phi -
+    alpha42) + R40 sin(nu) acts across the ray, at phi + 90 deg. The study prints R41 with a minus, with which the sum
+    of the three forces on the block is not zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
     """
 
     sign: float = EQUILIBRIUM

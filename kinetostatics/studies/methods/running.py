@@ -9,9 +9,10 @@ fixed steps   shooting with Runge-Kutta methods of order 4 or 8 (Hairer, Nørset
               Differential Equations I*, II.5)
 collocation   SciPy's `solve_bvp` with periodic ends; trigonometric polynomials (Fourier) with Newton's iteration
 
-Motions over time: the crank angle after 10 s of two published benchmarks, the slider-crank of SUNDIALS (Haug, *Computer
-Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8) and the N-four-bar of IFToMM (A02), by
-`drive.coast`, by other integrators of the same equation, and by constraint equations with Baumgarte's terms.
+Motions over time: the crank angle after 10 s of two published benchmarks. They are the slider-crank of SUNDIALS (Haug,
+*Computer Aided Kinematics and Dynamics of Mechanical Systems*, example 6.1.8) and the N-four-bar of IFToMM (A02). They
+are solved by `drive.coast`, by other integrators of the same equation, and by constraint equations with Baumgarte's
+terms.
 """
 
 import math

@@ -161,8 +161,9 @@ def require_massless(spring):
 class LoadForces:
     """Loads of a `solution` as forces at points and couples on links, in one posture, which derived classes give.
 
-    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link; and, for
-    numbers other than NumPy's, ``number`` of a load's parameter, ``value`` of a load, ``expj``, ``arg`` and ``where``.
+    They define ``at(link)``: reference joint, axis, velocity of the joint and angular velocity of a link. For numbers
+    other than NumPy's they also define ``number`` of a load's parameter, ``value`` of a load, ``expj``, ``arg`` and
+    ``where``.
     """
 
     solution: Any

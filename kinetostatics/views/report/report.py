@@ -207,14 +207,14 @@ def report(what, path, *, variant=None, title=None, pdf=None, units=None, comman
     path : path
         File to write, .html.
     variant : str, optional
-        Of a case, show only this variant beside the reference.
+        Of a case, show only this variant and the reference.
     title : str, optional
         By default the case's title, or the names of the mechanisms.
     pdf : path, optional
         File for the report as PDF too, printed by an installed browser.
     units : dict of dimension to unit, optional
-        Units of tables and figures, {"force": "kN", "length": "mm"}, as for `in_units`; the hand calculation stays in
-        SI, and so do published figures beside ours.
+        Units of tables and figures, {"force": "kN", "length": "mm"}, as for `in_units`; the hand calculation and
+        published figures stay in SI.
     command : str
         Command that made the report, shown in it.
     progress : bool

@@ -249,9 +249,9 @@ def test_a_slider_that_is_not_there_is_named():
 
 def test_no_volume_is_refused_with_crank_angles():
     words = (
-        r"GasSpring on 'slider': no volume is left at \d+ crank angles, the first .* deg; its 5e-05 m3 at 0.3 m end "
+        r"GasSpring on 'slider': no volume is left at \d+ crank angles, the first .* deg. Its 5e-05 m3 at 0.3 m end "
     )
-    words += r"at 0.325 m, but the slider goes on by up to 0.123\d* m; give more volume"
+    words += r"at 0.325 m, but the slider goes on by up to 0.123\d* m. Give more volume"
     with pytest.raises(ks.ParameterError, match=words):
         pump(gas(volume=5e-5, side=-1))
     program = ks.compile(ks.Scene.of(pump(gas(side=-1))), ("balancing_torque",), engine="numpy")

@@ -289,7 +289,7 @@ def test_a_hint_names_the_surge_ratio_below_five():
     """400 N/m on a nearly harmonic slider at 10 rad/s: the ratio is 5 at 400 (pi / 50)^2 = 1.579 kg."""
     assert hints(1.57) == []
     (text,) = hints(1.59)
-    assert "its surge ratio is 4.98, below 5: with 1.59 kg it swings between its ends at 49.83 rad/s" in text
+    assert "its surge ratio is 4.98, below 5. With 1.59 kg it swings between its ends at 49.83 rad/s" in text
     assert "harmonic 1 of the slider, the highest that counts, drives it at 10 rad/s" in text
     assert "by 0.36 %" in text
     assert hints(1.59, speed=-9.0) == hints(0.0) == hints(1.59, speed=0.0) == []

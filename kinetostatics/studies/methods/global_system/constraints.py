@@ -1,8 +1,8 @@
 """Constraint equations of a whole mechanism: motion from their derivatives, all forces from one linear system.
 
 Every moving link has three coordinates in q: x and y of its reference joint, and its angle theta. Joints, guides,
-slots, cams and the drive give as many equations C(q, phi) = 0 with Jacobian J = dC/dq (Nikravesh, *Computer-Aided
-Analysis of Mechanical Systems*; Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*):
+slots, cams and the drive give the same number of equations C(q, phi) = 0. Their Jacobian is J = dC/dq (Nikravesh,
+*Computer-Aided Analysis of Mechanical Systems*; Haug, *Computer Aided Kinematics and Dynamics of Mechanical Systems*):
 
     J qdot = -omega dC/dphi        J qddot = gamma - alpha dC/dphi        J^T lambda = M qddot - Q
 

@@ -2,7 +2,7 @@
 
 The two paths share no formula: the library's kernels on intervals (`enclosures`), and mpmath with independent formulas
 (`independent`). `exact_speed` solves periodic running by collocation at Chebyshev points between the kinks of the
-loads, with arb numbers of `WORKING_BITS` bits; Newton's iteration is on the energy U, dU/dphi = motor torque - load
+loads, with arb numbers of `WORKING_BITS` bits. Newton's iteration is on the energy U, dU/dphi = motor torque - load
 torque. The number of points rises until the speed changes by less than `SPEED_TOLERANCE`.
 """
 

@@ -169,7 +169,7 @@ LOAD_PARTS = "x", "y", "moment"
 class AppliedLoads(LoadForces):
     """Loads of a solution besides gravity: constants in ``numbers``, values that depend on the motion by a call.
 
-    Keys: a link's name with "_load_x", "_load_y", "_load_moment" for force and moment about its reference joint; a
+    Keys: a link's name with "_load_x", "_load_y", "_load_moment" for force and moment about its reference joint. Also a
     slider's name with "_push" for the force along its guide, and "_stiffness", "_free", "_cubic" for its spring.
     ``result(name)`` returns a function that computes a result of the equations' own motion.
     """
