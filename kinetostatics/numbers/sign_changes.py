@@ -50,7 +50,8 @@ def sign_changes(function, period, samples):
     angle = np.append(start, start[0] + period)[None]
     found = function(angle)
     if not len(found):
-        return SignChanges(*np.empty((2, 1, 0)), angle, np.empty((0, *angle.shape)))
+        nowhere = np.empty((1, 0))
+        return SignChanges(nowhere, nowhere, angle, np.empty((0, *angle.shape)))
     values = np.stack(np.broadcast_arrays(*(np.atleast_2d(row) for row in found), angle)[:-1])
     count, *designs, number = values.shape
     flat = math.prod(designs), number
@@ -73,7 +74,8 @@ def sign_changes(function, period, samples):
 
         first, root = own(lows, np.arange(lows.size)), find_roots(own, lows, highs)
         found[design, place] = np.mod(np.where(np.isnan(root), np.where(first == 0.0, lows, highs), root), period)
-    return SignChanges(*(part.reshape(*designs, part.shape[-1]) for part in (row, found)), angle, values)
+    row, found = (part.reshape(*designs, part.shape[-1]) for part in (row, found))
+    return SignChanges(row, found, angle, values)
 
 
 def pad_rows(design, count, *values):
