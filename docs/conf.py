@@ -37,6 +37,7 @@ extensions = [
     "casefile_keys",
     "mathml",
     "myst_nb",
+    "notebook_pages",
     "offline",
     "numpydoc",
     "public_names",
@@ -70,9 +71,15 @@ alone = ("index", "start", "command_line", "casefile", "how_sure", "gallery", "g
 html_sidebars = {page: [] for page in alone}
 html_show_sourcelink = False
 html_theme_options = {
+    "header_links_before_dropdown": 7,
     "navbar_end": ["theme-switcher"],
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],
     "footer_end": [],
     "show_prev_next": True,
 }
+
+
+def setup(app):
+    """Build pages, and run their code, on all processors."""
+    app.parallel = max(app.parallel, os.cpu_count() or 1)

@@ -1,6 +1,6 @@
-"""Scene of a validated variant: mechanism, loads, friction, counterweights, and the files beside the case file.
+"""Scene of a validated variant: mechanism, loads, friction, counterweights, and the files next to the case file.
 
-`places_by_path` gives the numbers that designs may vary, by paths as in scenes: "spring.stiffness", "slider2.mass".
+`places_by_path` returns the numbers that designs may vary, by paths as in scenes: "spring.stiffness", "slider2.mass".
 `collect` builds many parts and reports the faults of all.
 """
 
@@ -30,11 +30,11 @@ from .schema import drives, laws, parts, tables, variants
 COMPONENTS = {"x": 0, "y": 1, "along": 0, "across": 1}
 """Index by name of a component of a pair."""
 GUIDE_KEYS = ("guide_angle", "guide_offset")
-"""Keys that two points of the guide replace."""
+"""Keys replaced by two points of the guide."""
 
 
 PLANE_KEYS = ("plane", "couple_unbalance", "bearings")
-"""Keys of positions along the crankshaft: they vary only where they are given, as in scenes."""
+"""Keys of positions along the crankshaft: they vary only if given, as in scenes."""
 
 
 class NumberPlace(NamedTuple):
@@ -80,7 +80,7 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
 
 
 def _places_in_list(table, items):
-    """Places in groups or loads; from the second load of a kind on, its number is appended."""
+    """Places in groups or loads; the second and later loads of a kind get their number appended."""
     found: dict[str, NumberPlace] = {}
     counts: dict[str, int] = {}
     for number, part in enumerate(items):
@@ -107,7 +107,7 @@ def _unit_or_rule(field):
 
 
 def value_at(table, steps):
-    """Value in a validated table: a number in SI, or the word in its place."""
+    """Value in a validated table: a number in SI, or a word instead."""
     for step in steps:
         table = table[step] if isinstance(step, int) or isinstance(table, dict) else getattr(table, step)
     return table
@@ -139,7 +139,7 @@ class PartsError(KinetostaticsError, ValueError):
 
 
 def collect(makers):
-    """Results of functions by their keys; one `PartsError` with all faults they raise."""
+    """Results of functions by their keys; one `PartsError` lists all their faults."""
     found, problems = {}, []
     for keys, make in makers:
         try:
@@ -159,7 +159,7 @@ def build_link(table, length=None):
     if isinstance(centre, str):
         if length is None:
             raise KinetostaticsError(
-                'centre "mid-length" is for links between two joints, not for slider, block or slotted crank; give a '
+                'centre "mid-length" needs a link between two joints, not slider, block or slotted crank; give a '
                 "distance there"
             )
         centre = (length / 2, 0.0)
@@ -199,7 +199,7 @@ def _friction_pair(table, joint, mechanism):
     strange = [name for name in given if name not in allowed]
     if lacking or strange:
         words = [f"lacks {', '.join(lacking)}"] * bool(lacking) + [f"has {', '.join(strange)}"] * bool(strange)
-        raise KinetostaticsError(f"{' and '.join(words)}, but friction at {joint!r} takes {', '.join(allowed)}")
+        raise KinetostaticsError(f"{' and '.join(words)}, but friction at {joint!r} needs {', '.join(allowed)}")
     return kind(**given)
 
 
@@ -309,7 +309,7 @@ def build_scene(table, tabulated):
     loads = own + tuple(listed.values())
     if balanced is not None and loads_with_mass(loads):
         raise KinetostaticsError(
-            "balancing finds counterweights of the links alone, but a spring or shaft has mass; leave it out, or find "
+            "balancing finds counterweights for links only, but a spring or shaft has mass; leave it out, or find "
             "the counterweights as a design that minimises the shaking force"
         )
     friction = {joint: pair for (_, joint), pair in rubbing.items()}
@@ -328,7 +328,7 @@ def require_table_range(table, solution):
 
 
 def _mechanism(table, tabulated):
-    """Mechanism of a variant: its links, and the lengths and places that its builder takes."""
+    """Mechanism of a variant: its links, and the lengths and places for its builder."""
     if isinstance(table, variants.ChainVariant):
         return _chain(table, tabulated)
     shared: dict[str, Any] = {name: getattr(table, name) for name in ("assembly",) if hasattr(table, name)}
@@ -338,7 +338,7 @@ def _mechanism(table, tabulated):
         cam = build_cam(table.cam, tabulated.get(("cam",)), shared["guide"].guide_angle)
         if table.coupler_length is None:
             if not isinstance(cam, cams.CosineLaw):
-                raise KinetostaticsError("coupler_length is missing; only a cosine-law cam fixes it by itself")
+                raise KinetostaticsError("coupler_length is missing; only a cosine-law cam determines it")
             table = table.model_copy(update={"coupler_length": cam.coupler_length})
         shared["roller"] = table.roller and Roller(**dict(table.roller))
     for name, part in table:
@@ -373,7 +373,7 @@ def _balance(mechanism, table):
         raise KinetostaticsError(f"{table.method} balancing needs a counterweight on the crank: balancing.crank")
     if table.method == "partial" and set(weights) != {"crank"}:
         raise KinetostaticsError(
-            f"balancing: partial balancing takes one counterweight, on the crank, got {', '.join(weights)}"
+            f"balancing: partial balancing needs one counterweight, on the crank, got {', '.join(weights)}"
         )
     if table.method == "full":
         return balancing.full(mechanism, **weights)
@@ -381,7 +381,7 @@ def _balance(mechanism, table):
 
 
 def _own_loads(table, tabulated):
-    """Gravity, spring and process force, which have tables of their own."""
+    """Gravity, spring and process force, which have their own tables."""
     if table.gravity is not None:
         yield Gravity(**dict(table.gravity))
     spring, force = getattr(table, "spring", None), getattr(table, "process_force", None)

@@ -35,21 +35,21 @@ CAM_FORCE = ("smallest cam force", "largest cam force")
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A case file, read and checked; made by `load_case`.
+    """A case file, read and checked; `load_case` returns it.
 
     Attributes
     ----------
     title, source : str
     path : Path
     reference : str
-        Variant with which the others are compared, unless they name one of their own: `reference_of`.
+        Reference of all variants that do not name their own: `reference_of`.
     variants : mapping of name to Variant
     tolerances : mapping of parameter to text
         Distributions of parameters, for `tolerances`: "normal 712 kN/m +- 5 kN/m".
     designs : mapping of name to Design
         Searches that the file describes; `.find()` runs one.
     sizing : mapping of name to Part
-        Parts that the forces size, of [sizing.NAME]; `sizing_table()` shows their numbers.
+        Parts to be sized, from [sizing.NAME]; `sizing_table()` shows their numbers.
 
     Examples
     --------
@@ -96,7 +96,7 @@ class Case:
     def comparisons(self):
         """Names of the variants by their reference, a dict of lists; the case's reference comes first.
 
-        A reference that nothing else is compared with has an empty list.
+        A reference without compared variants has an empty list.
 
         Examples
         --------
@@ -112,7 +112,7 @@ class Case:
         return found
 
     def names_of(self, variant=None, reference=None):
-        """Names of the variant that varies, the first besides the reference unless told, and of its reference.
+        """Names of the variant that varies (by default the first besides the reference) and of its reference.
 
         Examples
         --------
@@ -126,7 +126,7 @@ class Case:
         return variant, reference or self.reference_of(variant)
 
     def solve(self, name, angles=720) -> Solution:
-        """Solution of a variant at this number of crank angles, even over the period of its loads, end excluded.
+        """Solution of a variant at a number of even crank angles over the period of its loads, end excluded.
 
         Examples
         --------
@@ -143,7 +143,7 @@ class Case:
     def comparison_table(self, balanced, reference=None):
         """Table of dynamic coefficients with a column of published figures, a pandas DataFrame.
 
-        The variant is compared with its own reference unless told.
+        By default the variant is compared with its own reference.
 
         Examples
         --------
@@ -160,7 +160,7 @@ class Case:
     def with_published(self, table):
         """A table of `Comparison.frame` with a last column of published figures, if there are any.
 
-        They are of variants compared with the case's reference.
+        They belong to variants compared with the case's reference.
 
         Examples
         --------
@@ -180,7 +180,7 @@ class Case:
             for quantity, text in getattr(self.published, column).items()
         }
         unknown = [name for name in printed if name not in rows and not re.fullmatch(EXTREMUM, name)]
-        if unknown:  # rows of any variant are right
+        if unknown:  # rows of any variant are valid
             mechanisms = [variant.mechanism for variant in self.variants.values()]
             known = [item for made in mechanisms for item in of_mechanism(made).values() if item.kind == "reaction"]
             allowed = tuple(dict.fromkeys([*rows, *(f"largest {item.label}" for item in known), *CAM_FORCE]))
@@ -188,7 +188,7 @@ class Case:
         return printed
 
     def balancing_table(self):
-        """Table of counterweights and shaking force of the balanced variants, a pandas DataFrame; None without any."""
+        """Table of counterweights and shaking force of the balanced variants, a pandas DataFrame, or None."""
         found = {
             name: (variant.balanced, variant.solve())
             for name, variant in self.variants.items()
@@ -199,8 +199,8 @@ class Case:
     def sizing_table(self, names=None):
         """Numbers of the parts in SI, a column for each variant; a pandas DataFrame, None without parts.
 
-        The index is part and number. ``attrs["notes"]`` lists for each part what needs a look, and why it has no
-        numbers with a variant, whose cells are then NaN.
+        The index is part and number. ``attrs["notes"]`` lists for each part points to check, and the reason why it has
+        no numbers for a variant; these cells are NaN.
 
         Parameters
         ----------
@@ -235,7 +235,7 @@ def load_case(path) -> Case:
     Returns
     -------
     Case
-        With the contents of all its files; they are not read again.
+        The case with the contents of all its files, which are not read again.
 
     Raises
     ------
@@ -245,10 +245,10 @@ def load_case(path) -> Case:
     Warns
     -----
     HintWarning
-        A tolerance is hundreds of times above or below its parameter, or a mass centre or an inertia looks like a slip
-        of units.
+        A tolerance is hundreds of times above or below its parameter, or a mass centre or an inertia has probably the
+        wrong unit.
     UserWarning
-        A sampled cam is noisy, or a file has the name of the shipped case that is read.
+        A sampled cam is noisy, or a file has the same name as the shipped case that is read.
 
     Examples
     --------
@@ -323,7 +323,7 @@ def sizing_table(parts, solutions):
             units |= {(key, number): row.unit for number, row in part.rows.items()}
             try:
                 with warnings.catch_warnings():
-                    warnings.simplefilter("ignore", HintWarning)  # they are the notes
+                    warnings.simplefilter("ignore", HintWarning)  # the notes say the same
                     sized = part.of(solution)
             except KinetostaticsError as error:
                 notes[key].append(f"{name}: {error}")
@@ -377,7 +377,7 @@ def _read_variant(name, own, common, folder, problems):
         variant = make_variant(table, folder, read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
-            warnings.simplefilter("ignore", ConditionWarning)  # whoever solves it gets them
+            warnings.simplefilter("ignore", ConditionWarning)  # the user gets them when solving
             build.require_table_range(table, variant.solve(angles=720))
         assembly.require_turn(variant.mechanism)
     except PartsError as error:

@@ -1,4 +1,4 @@
-"""Designs of a case file, the searches they describe, and the faults of designs and tolerances."""
+"""Designs of a case file (searches), and the faults of designs and tolerances."""
 
 from dataclasses import dataclass, field, fields
 from typing import Any
@@ -26,14 +26,14 @@ CAM_KEYS = tuple(item.name for item in fields(Options) if item.name in TorqueFre
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """A search that a case file describes.
+    """A search described by a case file.
 
     Attributes
     ----------
     name : str
         Name of the variant with the result.
     sources : dict of str to str
-        Variant at the start of the search, of duties one for each, with its reference in ratios.
+        Variant at the start of the search (with duties one each), with its reference in ratios.
     kind : "optimum", "torque-free-cam" or "front"
     raw : dict
         Its table in the file.
@@ -51,7 +51,7 @@ class Design:
 
     @property
     def duties(self):
-        """Share of the time by variant; None of a search for one variant."""
+        """Share of the time by variant; None for a search with one variant."""
         return getattr(self.table, "duties", None)
 
     @property
@@ -65,7 +65,7 @@ class Design:
         return self.sources[self.source]
 
     def variants_of(self, name):
-        """Sources of a result by the names of its variants: a duty is appended to the name."""
+        """Sources of a result by the names of its variants; the name of a duty is appended."""
         return {f"{name}-{source}": source for source in self.sources} if self.duties else {name: self.source}
 
     @property
@@ -149,7 +149,7 @@ def read_designs(tables, reference, variants, problems):
         given = [(f"design.{name}.{key}", getattr(table, key)) for key in ("variant", "reference")]
         given += [(f"design.{name}.duties", duty) for duty in duties or ()]
         wrong = [checks.choice(key, word, tuple(variants)) for key, word in given if word is not None]
-        wrong += [f"{key} is what it is to find: give another" for key, word in given if word == name]
+        wrong += [f"{key} is the name of the result: give another" for key, word in given if word == name]
         problems += [problem for problem in wrong if problem]
         if all(map(variants.get, (*chosen, *chosen.values()))):
             pairs = {source: (variants[source], variants[other]) for source, other in chosen.items()}
@@ -163,7 +163,7 @@ def read_designs(tables, reference, variants, problems):
 
 
 def _problems(table, duty, source, reference):
-    """Faults of a design of right variants in one of its duties, each after its key."""
+    """Faults of a design of valid variants in one of its duties, each after its key."""
     scene, vary, varied = source.scene, table.vary, source
     if isinstance(table, TorqueFreeCamTable):
         try:
@@ -206,7 +206,7 @@ def _problem_of(key, take, *given):
 
 
 def _require_output(text, limit, scene, reference, parts):
-    """Raise an error unless the scene has the output, or that of a limit, and for a ratio the reference too."""
+    """Raise an error unless the scene (for a ratio also the reference) has the output, or that of a limit."""
     output = parse_constraint(text, scene, parts).output if limit else parse_output(text, scene, parts)
     if output.ratio:
         output.of(reference)
@@ -237,7 +237,7 @@ def tolerance_problems(spreads, variants):
 
 
 def doubtful_tolerances(spreads, variants):
-    """Sentences on tolerances whose size is far from their parameter in every variant."""
+    """Sentences on tolerances of a very different size than their parameter in every variant."""
     for name, text in spreads.items():
         spread = parse_spread(text)
         size = max(abs(spread.median), spread.deviation) * base_factor(spread.unit)

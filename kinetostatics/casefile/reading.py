@@ -41,7 +41,7 @@ def shipped_cases():
 def find_case(path):
     """Path of the case file, or of the shipped case of that name."""
     if not isinstance(path, str | os.PathLike):
-        raise ParameterError(f"load_case: takes a path or the name of a shipped case, got {quoted(path)}")
+        raise ParameterError(f"load_case: needs a path or the name of a shipped case, got {quoted(path)}")
     shipped = shipped_cases()
     if not isinstance(path, str) or path not in shipped:
         found = Path(path)
@@ -66,7 +66,7 @@ def read_toml(path):
         beside, whole = [str(file) for file in path.parent.glob("*.toml")], f"{path}.toml"
         hint = f"; did you mean {whole!r}?" if whole in beside else checks.hint(path, beside)
         names = f"{', '.join(shipped)}{hint or checks.hint(path.stem, shipped)}"
-        raise CaseError(path, [f"no such file, and no shipped case of that name ({names})"])
+        raise CaseError(path, [f"there is no file and no shipped case of this name ({names})"])
     text = read_text(path, MAX_CASE_BYTES)
     try:
         raw = None if _LONG_KEY.search(text) else tomllib.loads(normalise(text))
@@ -82,8 +82,8 @@ def read_toml(path):
             for inner in (outer.values() if isinstance(outer, dict) else outer)
             if isinstance(inner, dict | list)
         ]
-    if level:  # no table, or one deeper than that
-        raise CaseError(path, [f"holds tables or lists within each other more than {MAX_DEPTH} deep"])
+    if level:  # no table, or a deeper one
+        raise CaseError(path, [f"has tables or lists nested more than {MAX_DEPTH} deep"])
     return path, raw
 
 

@@ -32,13 +32,13 @@ class Variant:
     ----------
     scene : Scene
     table : pydantic model
-        Its validated table of the file.
+        Validated table from the file.
     balanced : Balanced or None
         Result of balancing by the counterweights of the file.
     folder : Path
-        Of the file.
-    tabulated : mapping of keys to what was read
-        Contents of the files beside the case file: cams, tables. They are not read again.
+        Folder of the case file.
+    tabulated : mapping of keys to contents
+        Contents of the files next to the case file: cams, tables. They are not read again.
     sizing : mapping of name to Part
         Parts of the case file, for limits and outputs such as "main_bearing.life_hours".
 
@@ -97,7 +97,7 @@ class Variant:
 
     @property
     def content(self):
-        """Bytes of its table and files, the same in every session; without those on which no solution depends."""
+        """Bytes of its table and files, the same in every session; without parts that do not affect solutions."""
         return self.table.model_dump_json(exclude={"drive", "reference"}).encode() + b"".join(
             _bytes(part) for keys, part in self.tabulated.items() if keys[0] != "drive"
         )
@@ -106,7 +106,7 @@ class Variant:
         """Variant with other values at some paths of its file, in SI.
 
         Derived numbers follow: a centre at mid-length, a spring that balances the slider, the coupler of a cosine law,
-        counterweights. Use ``scene.varied`` to vary a number and keep all others.
+        counterweights. Use ``scene.varied`` to vary a number and keep all others constant.
 
         Parameters
         ----------
@@ -124,7 +124,7 @@ class Variant:
         return [find_on_disk(self.folder / name) for _, _, name in build.named_files(self.table)]
 
     def solve(self, angles=720) -> Solution:
-        """Solution at this number of crank angles, even over the period of the loads, its end excluded."""
+        """Solution at a number of even crank angles over the period of the loads, end excluded."""
         checks.require("solve", checks.count("angles", angles, size=checks.BYTES_PER_ANGLE))
         return self.scene.solve(angles)
 

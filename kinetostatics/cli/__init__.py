@@ -1,8 +1,8 @@
-"""Command line ``kinetostatics COMMAND CASE``; it may import all rooms.
+"""Command line ``kinetostatics COMMAND CASE``; it may import all folders of the package.
 
 ``--json`` prints one object: the command, the version, the case, and the results by the names and units of the Python
 tables: ``variants.plain.extremes.balancing_torque.largest`` of ``run``, with its ``unit`` beside it. ``--csv`` prints
-one table, ``--csv FILE`` writes it as well. Standard output then holds nothing else; progress and warnings go to
+one table, ``--csv FILE`` writes it as well. Standard output then contains nothing else; progress and warnings go to
 standard error, progress only on a terminal and never with ``--json``. Missing folders are made; standard error names
 those made for a file.
 """
@@ -54,7 +54,7 @@ def main(arguments=None):
     except OSError as error:
         status, message = 2, files.describe_os_error(error, "standard output")
     except MemoryError as error:
-        status, message = 2, f"there is not enough memory; take fewer crank angles or designs ({error})"
+        status, message = 2, f"there is not enough memory; use fewer crank angles or designs ({error})"
     except KeyboardInterrupt:
         status, message = 130, "interrupted"
     except _Terminated:
@@ -71,9 +71,9 @@ def main(arguments=None):
 
 @contextmanager
 def _own_settings():
-    """Print warnings for users without the source line, each hint once; SIGTERM raises as Ctrl-C does; draw to files.
+    """Print warnings without the source line, each hint once; SIGTERM raises like Ctrl-C; draw to files.
 
-    Figures use the backend agg instead of one for a screen in MPLBACKEND.
+    Figures use the backend agg instead of a screen backend in MPLBACKEND.
     """
     format_before, told = warnings.formatwarning, set()
     backend_before = None if "matplotlib" in sys.modules else os.environ.get("MPLBACKEND")

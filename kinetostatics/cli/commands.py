@@ -1,6 +1,6 @@
-"""The commands but sweep and design, which have modules of their own.
+"""The commands except sweep and design, which have their own modules.
 
-A command imports its libraries when it runs, so that the others start fast.
+A command imports its libraries when it runs, so the other commands start fast.
 """
 
 import os
@@ -11,7 +11,6 @@ from pathlib import Path
 
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
-from ..numbers.formatting import number
 from ..numbers.output_units import shown_units
 from . import output
 from .output import print_columns, print_error, print_folded, print_table, require_writable, variant_words, write_table
@@ -20,7 +19,7 @@ EXPLANATIONS = {".html": "page", ".tex": "latex", ".txt": "text"}
 """Attribute of an explanation to write, by the ending of its file."""
 
 CHECK_QUANTITY = "balancing_torque_by_power"
-"""Quantity that the table omits, for the power balance states it."""
+"""Quantity that the table omits, because the power balance shows it."""
 
 
 def list_cases(options):
@@ -55,9 +54,9 @@ def new(options):
         if kind[1:2].isalpha():  # digits after a point are no ending: press 2.5
             raise ParameterError(
                 f"new: {options.name} ends in {kind}, a case file in .toml: write "
-                f"{Path(options.name).with_suffix('.toml')}, or {path} if you mean it"
+                f"{Path(options.name).with_suffix('.toml')}, or {path} if this is the name"
             )
-    there = f"{path} is there already; give another name" if os.path.lexists(path) else None
+    there = f"{path} exists already; give another name" if os.path.lexists(path) else None
     checks.require("new", there or files.write_problem(path))
     with files.write_atomically(path) as temporary:
         Path(temporary).write_text(starter(options.kind, path.stem), encoding="utf-8")
@@ -96,7 +95,7 @@ def _extremes(solution, given, shares):
 
     found = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
     means = {"mean_torque [N m]": solution.mean_torque, "mean_power [W]": solution.mean_power}
-    found["drive"] = means | {"energy_per_turn [J]": solution.energy_per_turn}
+    found["drive"] = shown_units().numbers(means | {"energy_per_turn [J]": solution.energy_per_turn})
     rows = {name: row.in_units(shown_units()) for name, row in extremes_by_name(solution).items()}
     found["extremes"] = {
         name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
@@ -105,7 +104,7 @@ def _extremes(solution, given, shares):
     if lose(solution):
         lost = solution.losses
         powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
-        found["losses"] = powers | {"at": output.rows_by_name(lost.frame())}
+        found["losses"] = shown_units().numbers(powers) | {"at": output.rows_by_name(lost.frame())}
     if given:
         largest = output.rows_by_name(largest_with_uncertainty(solution, given))
         found["uncertainty"] = {"inputs": given, "largest": largest}
@@ -115,7 +114,7 @@ def _extremes(solution, given, shares):
 
 
 def _parts(case, solutions):
-    """Sizes of the parts of the case for ``--json``: by variant, part and number; none without parts."""
+    """Results of the parts of the case for ``--json``: by variant, part and number; empty without parts."""
     from ..casefile.case import sizing_table
 
     if not case.sizing:
@@ -149,10 +148,9 @@ def _print_extremes(case, solutions, given, shares, options):
         )
         names = [name.removeprefix("smallest ").removeprefix("largest ") for name in SHOWN]
         print_columns(*heads, *zip(names, ends, errors, strict=True))
-        print_folded(
-            f"\ndrive, exact means over the period: torque {number(solution.mean_torque)} N m, power "
-            f"{number(solution.mean_power)} W; energy per turn {number(solution.energy_per_turn)} J"
-        )
+        drive = (solution.mean_torque, "N m"), (solution.mean_power, "W"), (solution.energy_per_turn, "J")
+        torque, power, energy = (shown_units().text(*each) for each in drive)
+        print_folded(f"\ndrive, exact means over the period: torque {torque}, power {power}; energy per turn {energy}")
         print_folded(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"
@@ -184,13 +182,14 @@ def explain(options):
     require_writable(case, "--out", options.out, tuple(EXPLANATIONS))
     name = case.reference if options.variant is None else options.variant
     told = case.variant(name).scene.solve(options.angle).explain(options.quantity, options.angle)
-    print_folded(f"{case.title}: {variant_words(name, options, 'the reference')}\n")
-    print(told)
     if options.out:
         written = getattr(told, EXPLANATIONS[Path(options.out).suffix.lower()])
         with files.write_atomically(options.out) as temporary:
             Path(temporary).write_text(f"{written}\n", encoding="utf-8")
-        print(f"\nwrote {options.out}")
+        print(options.out)
+    else:
+        print_folded(f"{case.title}: {variant_words(name, options, 'the reference')}\n")
+        print(told)
 
 
 def plot(options):
@@ -234,14 +233,14 @@ def precision(options):
 
 
 def _print_precision(case, table, fronts, paths):
-    print_folded(f"{case.title}\n\nno other method is both faster and nearer than these; errors by the largest value:")
+    print_folded(f"{case.title}\n\nno other method is both faster and more accurate; errors over the largest value:")
     for (variant, _), front in fronts.items():
         print_folded(f"\n{variant}: {front['label'].iloc[0]}\n")
         shown = front.set_index("method")[["setting", "value", "time [ns/angle]", "error"]]
         print_table(shown.astype(object).fillna(""))
     absent = table[table.groupby(["variant", "quantity", "method"])["error"].transform("count") == 0]
     if len(absent):
-        print_folded("\nwhat does not apply:\n")
+        print_folded("\nmethods that do not apply:\n")
         reasons = absent[["method", "variant", "not given"]].drop_duplicates(["method", "not given"])
         print_table(reasons.rename(columns={"not given": "does not apply"}).set_index("method"))
     print(*paths, sep="\n")
@@ -259,15 +258,13 @@ def stability(options):
 
 
 def _print_stability(table, paths):
-    print_folded(
-        f"at how many of the {table['place'].nunique()} places each method does what, several things at some:\n"
-    )
+    print_folded(f"number of the {table['place'].nunique()} places with each behaviour (several are possible):\n")
     counts = table["does"].str.get_dummies(", ").groupby(table["method"], sort=False).sum()
     good = [text for text in ("exact", "as near as the condition allows") if text in counts]
     print_table(counts[[*good, *counts.columns.drop(good)]])
     near = table[table["method"].str.startswith("ours") & ~table["does"].isin(["exact", "does not give it"])]
     if len(near):
-        print_folded("\nwhere ours is not exact:\n")
+        print_folded("\nplaces where our method is not exact:\n")
         print_table(near.set_index("place")[["method", "worst error", "condition there"]])
     print_folded("\nmethod by method at each place:")
     print(*paths, sep="\n")
@@ -319,7 +316,7 @@ def drive(options):
     def words():
         print_folded(f"{case.title}\n\nin periodic running under the motor of the case\n")
         print_table(tables["running"].rename_axis("over the period"))
-        print("\nwhere the energy of a turn goes\n")
+        print("\nenergy balance of a turn\n")
         print_table(tables["energy_per_turn"].rename_axis("energy per turn"))
         for name, reason in reasons.items():
             print_folded(f"\n{name}: {reason}")
@@ -372,7 +369,7 @@ def compare(options):
 
 
 def _with_roles(case, comparison):
-    """Table of a comparison with columns "reference" and "variant" in place of the variants' names."""
+    """Table of a comparison with columns "reference" and "variant" instead of the variants' names."""
     of_study = comparison.names[0] == case.reference
     table = shown_units().table(comparison.frame(), case.published.value if of_study else ())
     table = case.with_published(table) if of_study else table
@@ -418,7 +415,7 @@ def _print_group(case, reference, found):
         print_folded(f"\n{reference} / {name}: a ratio above 1 is in favour of {name}, below 1 against it\n")
         print_columns(*columns, *columns_of_ratios, *_published(rows, published))
     else:
-        print_folded(f"\nvalues of {reference} and of what it is compared with\n")
+        print_folded(f"\nvalues of {reference} and of the variants compared with it\n")
         print_columns(*columns, *_published(rows, of_values))
         print_folded(f"\nratios, {reference} / each: above 1 is in favour of the variant, below 1 against it\n")
         labels = [row.label for row in ratios]

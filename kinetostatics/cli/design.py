@@ -19,17 +19,15 @@ from . import output
 from .output import print_error, print_folded, print_table, require_writable
 
 SPREAD_SAMPLES = 2048
-"""Machines drawn from a spread for the final quantile."""
+"""Number of machines sampled from a spread for the final quantile."""
 SAME_END_TOLERANCE = 1e-4
-"""Relative difference of two ends of searches that count as the same."""
+"""Largest relative difference of equal results of searches."""
 
 
 def design(options):
     case = load_case(options.case)
     if not case.designs:
-        raise CaseError(
-            case.path, ["has nothing to find; say what as [design.NAME], with a kind, what varies and limits"]
-        )
+        raise CaseError(case.path, ["has no [design.NAME] table; add one with a kind, varied numbers and limits"])
     names = list(dict.fromkeys(options.design)) if options.design else list(case.designs)
     require(case.path, *(checks.choice("design", name, tuple(case.designs)) for name in names))
     _require_writable(case, names, options)
@@ -100,7 +98,7 @@ def _require_writable(case, names, options):
     if options.plot:
         checks.require("--plot", files.folder_write_problem(options.plot))
     if options.out:
-        there = f"{options.out} is there already; give another name" if os.path.lexists(options.out) else None
+        there = f"{options.out} exists already; give another name" if os.path.lexists(options.out) else None
         checks.require("--out", there or files.write_problem(options.out, inputs=case.files, endings=(".toml",)))
         items = [case.designs[name] for name in names]
         pairs = [pair for item in items for pair in item.sources.items()]
@@ -128,12 +126,12 @@ def _print_design(item, found):
     if len(found.starts) > 1:
         best = min(found.starts)
         same = sum(np.isfinite(end) and abs(end - best) <= SAME_END_TOLERANCE * abs(best) for end in found.starts)
-        lines[0] += f"; {same} of {len(found.starts)} searches came to this end"
+        lines[0] += f"; {same} of {len(found.starts)} searches gave this result"
     if found.prices:
-        lines.append("gain: by how much the goal would be better if what binds gave way by one of its unit")
+        lines.append("gain: improvement of the goal if the active limit is relaxed by one unit")
     if np.isfinite(found.bound):
-        lines.append(f"under weight a symmetric cam reaches a ratio of mean torques of about {found.bound:.3g} at most")
-    lines.append(f"power balance of what was found: {_power_residual(found):.1e} of the largest power")
+        lines.append(f"under weight the ratio of mean torques of a symmetric cam is at most about {found.bound:.3g}")
+    lines.append(f"power balance of the result: {_power_residual(found):.1e} of the largest power")
     if item.spread is not None:  # over more machines than in the search
         goal = item.table.minimise or item.table.maximise
         duties = {name: (found.scene[name], share) for name, share in found.shares.items()} or found.scene

@@ -1,6 +1,7 @@
 """Options of the command line: its commands with their options, the types of these, and the parser."""
 
 import argparse
+import textwrap
 from functools import partial
 from typing import Any
 
@@ -10,18 +11,32 @@ from ..numbers.formatting import normalise
 from ..numbers.output_units import output_units
 from ..numbers.units import to_si
 from ..version import __version__
-from .output import STDOUT
+from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
 STARTERS = ("crank-slider", "four-bar", "chain")
 """Mechanisms of the case files to start from."""
 
-EPILOG = (
+WIDTH_NOTE = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
-    "wider. For other programs: --json, and --csv where there is a table, write numbers in full and nothing else."
+    "wider."
 )
-"""End of the help of every command."""
+EXAMPLES = {
+    "list": "kinetostatics list",
+    "new": "kinetostatics new press --kind four-bar",
+    "run": "kinetostatics run sawframe_2r63 --variant cam-circle --shares O",
+    "compare": "kinetostatics compare sawframe_2r63 --csv coefficients.csv",
+    "explain": 'kinetostatics explain sawframe_2r63 --angle "39.3 deg" --quantity O',
+    "drive": 'kinetostatics drive sawframe_2r63 --start "90 deg"',
+    "plot": "kinetostatics plot compressor --out figures --format svg",
+    "report": "kinetostatics report compressor --out compressor.html",
+    "precision": "kinetostatics precision compressor --out precision",
+    "sweep": 'kinetostatics sweep sawframe_2r63 --vary "slider.mass=500..700 kg:5" --output "largest O"',
+    "design": "kinetostatics design sawframe_2r63 --out found.toml",
+    "stability": "kinetostatics stability --out stability",
+}
+"""A call of each command."""
 
 
 def _text(text):
@@ -71,15 +86,15 @@ def _formats(words):
 
 def _csv(table):
     return _option(
-        "--csv", "FILE", f"{table}, as CSV to FILE, or in place of tables without one", _text, nargs="?", const=STDOUT
+        "--csv", "FILE", f"{table}, as CSV to FILE, or without FILE instead of tables", _text, nargs="?", const=STDOUT
     )
 
 
 _angles, _designs = partial(_count, size=checks.BYTES_PER_ANGLE), partial(_count, size=DESIGN)
 CASE = _option("case", "CASE", "a TOML file, or the name of a shipped case: sawframe_2r63", _text)
 VARIANT = _option("--variant", "NAME", "only this variant")
-UNITS = _option("--units", "LIST", 'units of what is shown, "force=kN,length=mm"; SI and degrees else', _units)
-JSON = "--json", {"action": "store_true", "help": "results as JSON in place of tables, numbers in full"}
+UNITS = _option("--units", "LIST", 'units of the output, "force=kN,length=mm"; by default SI and degrees', _units)
+JSON = "--json", {"action": "store_true", "help": "results as JSON instead of tables, numbers in full"}
 COMMANDS: dict[str, tuple[Any, ...]] = {
     "list": (
         ("commands", "list_cases"),
@@ -90,7 +105,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
     "new": (
         ("commands", "new"),
         "write a commented case file to start from",
-        _option("name", "NAME", "of the case: NAME.toml is written, never over another", _text),
+        _option("name", "NAME", "of the case: NAME.toml is written, never over another file", _text),
         ("--kind", {"choices": STARTERS, "default": STARTERS[0], "help": "mechanism (%(default)s)"}),
     ),
     "run": (
@@ -102,15 +117,15 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option(
             "--uncertain",
             "PATH=SIZE",
-            'also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
-            '"tolerances" for those of the case file; several, each with --uncertain before it',
+            'also the uncertainty of the largest values: that of a number, "crank_length=0.01 mm", or '
+            '"tolerances" for those of the case file; repeat --uncertain for several',
             action="append",
         ),
         _option(
             "--shares",
             "NAME",
-            'also who causes a force or torque, "O": inertia and weight of each link, and each load; several, each '
-            "with --shares before it",
+            'also the shares of a force or torque, "O": inertia and weight of each link, and each load; repeat '
+            "--shares for several",
             action="append",
         ),
         UNITS,
@@ -166,8 +181,8 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         "one page with the moving mechanism, figures and tables",
         CASE,
         _option("--out", "FILE", "page to write, .html", _text, required=True),
-        _option("--variant", "NAME", "only this variant beside the reference"),
-        _option("--pdf", "FILE", "print it to a PDF too, by a browser that is there", _text),
+        _option("--variant", "NAME", "only this variant and the reference"),
+        _option("--pdf", "FILE", "also a PDF, printed by an installed browser", _text),
         UNITS,
     ),
     "precision": (
@@ -196,10 +211,10 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option(
             "--variant",
             "NAME",
-            "whose parameters vary (the first besides the reference of the case)",
+            "variant with the parameters (the first besides the reference of the case)",
         ),
-        _option("--reference", "NAME", "what ratios refer to (the variant's reference)"),
-        _option("--sample", "N", "N designs of a Latin hypercube in place of a grid", _designs),
+        _option("--reference", "NAME", "reference of ratios (the variant's reference)"),
+        _option("--sample", "N", "N designs of a Latin hypercube instead of a grid", _designs),
         _option("--angles", "N", "crank angles over the period, 12 at least (360)", _angles, default=360),
         _option("--workers", "N", "processes (this one, on all its cores)", _count),
         _option("--out", "PATH", "table to write, .csv or .parquet; or a folder to resume from", _text),
@@ -209,19 +224,19 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
     ),
     "design": (
         ("design", "design"),
-        "find the machines that the case asks for: its [design] tables",
+        "find the machines of the [design] tables of the case",
         CASE,
         _option("--design", "NAME", "only these (all)", action="append"),
-        _option("--starts", "N", "searches for each (as the case says)", _count),
-        _option("--out", "FILE", "case file to write with what is found, .toml", _text),
+        _option("--starts", "N", "searches for each (as in the case)", _count),
+        _option("--out", "FILE", "case file to write with the results, .toml", _text),
         _option("--plot", "DIR", "folder for the figures", _text),
         _formats("of the figures (png)"),
         JSON,
-        _csv("what was found, a row for each number"),
+        _csv("the results, a row for each number"),
     ),
     "stability": (
         ("commands", "stability"),
-        "every method's error near the places where it hurts",
+        "every method's error near critical places",
         _option("--out", "DIR", "folder for the CSVs and the chart", _text, required=True),
         JSON,
     ),
@@ -229,17 +244,27 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
 """By name: module and function, which are imported when the command runs, a line of help, and the options."""
 
 
+def _epilog(example, *notes):
+    """End of a help: an example, and notes folded to the width of the terminal."""
+    return "\n\n".join([f"example:\n  {example}", *(textwrap.fill(note, width()) for note in notes)])
+
+
 def parser():
     """The parser; ``options.command`` is module and function of the command, ``options.word`` its name."""
+    style = argparse.RawDescriptionHelpFormatter
     main = argparse.ArgumentParser(
         prog="kinetostatics",
         description="Forces and drive torque of planar mechanisms, from a case file.",
-        epilog=EPILOG,
+        epilog=_epilog(EXAMPLES["run"], WIDTH_NOTE),
+        formatter_class=style,
     )
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
     for name, (function, text, *options) in COMMANDS.items():
-        command = group.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=EPILOG)
+        formats = " and ".join(option for option, _ in options if option in ("--json", "--csv"))
+        epilog = _epilog(EXAMPLES[name], *([f"For other programs: {formats}, numbers in full."] if formats else []))
+        words = f"{text[0].upper()}{text[1:]}."
+        command = group.add_parser(name, help=text, description=words, epilog=epilog, formatter_class=style)
         command.set_defaults(command=function, word=name)
         for option, settings in options:
             command.add_argument(option, **settings)

@@ -1,6 +1,6 @@
-"""Output of commands: tables and words as wide as the terminal, or numbers in full by ``--json`` and ``--csv``.
+"""Output of commands: tables and text as wide as the terminal, or numbers in full by ``--json`` and ``--csv``.
 
-With these, standard output holds nothing else. NaN (no value) is null in JSON and empty in CSV; infinity is the text
+With these, standard output contains nothing else. NaN (no value) is null in JSON and empty in CSV; infinity is the text
 "Infinity" in JSON.
 """
 
@@ -30,7 +30,7 @@ MIN_FOLDED_WIDTH = 24
 
 
 def read_case(options):
-    """The case of a command; a file of ``--csv`` that cannot be written is refused."""
+    """The case of a command; an error if a file of ``--csv`` cannot be written."""
     from ..casefile.case import load_case
 
     case = load_case(options.case)
@@ -196,7 +196,7 @@ def announce(options, *lines):
 
 
 def deliver(options, results, words=None, table=None, case=None):
-    """Print results as the options ask for them: as one JSON object, as words, or as CSV; functions make each."""
+    """Print results according to the options: as one JSON object, as text, or as CSV; functions return each."""
     if wants_json(options):
         of_case = {} if case is None else {"title": case.title, "path": case.path, "reference": case.reference}
         head = {"command": options.word, "version": __version__} | ({"case": of_case} if of_case else {})
@@ -234,7 +234,7 @@ def progress(options, names, label):
 
 
 def _jsonable(item):
-    """The item with values that JSON has."""
+    """The item with values of JSON types."""
     if isinstance(item, Mapping):
         return {str(key): _jsonable(value) for key, value in item.items()}
     if hasattr(item, "columns"):  # a pandas DataFrame

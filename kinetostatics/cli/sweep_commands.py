@@ -107,7 +107,7 @@ def _print_sweep(found, wanted, varied):
 
 
 def _pairs(texts, problem, form):
-    """Pairs of options as path=text; `problem` begins the error, `form` says how to write them."""
+    """Pairs of options as path=text; `problem` begins the error, `form` is the correct form."""
     for text in texts:
         path, equals, told = text.partition("=")
         if not equals:
@@ -116,7 +116,7 @@ def _pairs(texts, problem, form):
 
 
 OF_THE_CASE = "tolerances"
-"""Stands for all that the case file's [tolerances] tell."""
+"""Means all [tolerances] of the case file."""
 OPTION = "--uncertain"
 
 
@@ -153,7 +153,7 @@ def standard_uncertainties(case, names, texts):
 def print_uncertainty(solution, given):
     """Print the largest values of a solution with their uncertainty."""
     if not given:
-        print_folded("\nnone of the uncertain numbers is one of this variant")
+        print_folded("\nthis variant has none of the uncertain numbers")
         return
     table = shown_units().table(largest_with_uncertainty(solution, given))
     rounding = table["rounding"].fillna(0.0)
@@ -168,6 +168,6 @@ def print_uncertainty(solution, given):
     two_digits = (0.1 * table[["share [%]"]]).reindex(columns=table.columns)
     print_table(shown.rename(columns=columns), two_digits)
     print_folded(
-        f"\nlargest values, and how sure they are: standard uncertainty from that of {', '.join(sorted(given))}, "
-        "independent and to first order, and the proven bound on rounding added to it, rounded up to two digits"
+        f"\nlargest values and their accuracy: standard uncertainty from {', '.join(sorted(given))}, independent and "
+        "of first order, plus the proven bound on rounding, rounded up to two digits"
     )

@@ -24,7 +24,7 @@ from ..numbers.sign_changes import sign_changes
 from .load_functions import check_resolution, samples_of_functions, undeclared_functions
 
 SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
-"""Least size of a kink relative to its load's largest value, and largest number of such kinks of a load."""
+"""Least size of a kink relative to its load's largest value, and largest number of these kinks of a load."""
 SAMPLES = 720
 """Crank angles of a turn between which a friction rate or force changes its sign at most once."""
 FINE_SAMPLES = 1440

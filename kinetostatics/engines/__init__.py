@@ -1,4 +1,4 @@
-"""How fast and how sure: kernels recorded by structure and compiled, derivatives, rounding-error bounds.
+"""Speed and accuracy: kernels recorded by structure and compiled, derivatives, rounding-error bounds.
 
 May import errors, numbers, machine, mechanics.
 """

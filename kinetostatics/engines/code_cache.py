@@ -1,8 +1,8 @@
 """Modules of generated source, with machine code of numba kept on disk.
 
 Code from disk is executed, so only files with correct checksums in a folder that no other user can write to are used;
-else the source is compiled in memory. The name of a program's folder is a hash of its source, numba, Python and the
-processor: programs of other versions are never found. A folder appears whole and is never changed.
+otherwise the source is compiled in memory. The name of a program's folder is a hash of its source, numba, Python and
+the processor: programs of other versions are never used. A folder appears complete and never changes.
 """
 
 import hashlib
@@ -27,13 +27,13 @@ CHECKSUMS = "checksums.json"
 
 
 class UntrustedError(OSError):
-    """Another user may change the kept files."""
+    """Another user may change the cached files."""
 
 
 def programs_folder() -> Path:
-    """Folder of kept programs: KINETOSTATICS_CACHE, else the user's cache folder; created if missing.
+    """Folder of cached programs: KINETOSTATICS_CACHE, else the user's cache folder; created if missing.
 
-    `OSError` if there is none, it cannot be created, or other users may write to it.
+    `OSError` if there is no folder, it cannot be created, or other users may write to it.
     """
     given = os.environ.get("KINETOSTATICS_CACHE")
     try:
@@ -46,7 +46,7 @@ def programs_folder() -> Path:
             if not folder.is_absolute() or (folder.is_relative_to(home) and not home.is_dir()):
                 raise FileNotFoundError(f"there is no home folder for {folder}")
     except ImportError as error:
-        raise OSError('platformdirs, which finds it, is missing: pip install "kinetostatics[fast]"') from error
+        raise OSError('platformdirs, which finds the folder, is missing: pip install "kinetostatics[fast]"') from error
     except RuntimeError as error:
         raise OSError(f"KINETOSTATICS_CACHE is {given!r}: {error}" if given else str(error)) from error
     for step in reversed([folder, *folder.parents]):
@@ -68,13 +68,13 @@ def require_private(path):
             if status.st_uid not in (0, os.getuid()):
                 raise UntrustedError(f"{step} belongs to another user")
             shared = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH) and not stat.S_ISLNK(status.st_mode)
-            kept = step != place and status.st_mode & stat.S_ISVTX  # of a folder like /tmp others keep their own
+            kept = step != place and status.st_mode & stat.S_ISVTX  # in a folder like /tmp others own their files
             if shared and not kept:
                 raise UntrustedError(f"others may write to {step}; give another folder, or chmod go-w {step}")
 
 
 def is_intact(entry) -> bool:
-    """Whether the files of a program's folder have the kept checksums; `UntrustedError` if others may write to one."""
+    """Whether the files of a program's folder have the stored checksums; `UntrustedError` if others may write there."""
     files = _files(entry)
     if any(path.is_symlink() or not (path.is_file() or path.is_dir()) for path in (entry, *files)):
         return False
@@ -119,17 +119,18 @@ def _checksums(entry):
 
 
 def load_module(text, keep=False) -> ModuleType:
-    """Module of a source text, in which `KEEP` is whether machine code is kept: ``njit(signature, cache=KEEP)``.
+    """Module of a source text, in which `KEEP` tells numba to cache machine code: ``njit(signature, cache=KEEP)``.
 
-    Only functions with a signature are kept, because they are compiled while the module is loaded. `keep` reads machine
-    code from disk and writes it there; if that fails, the module is compiled in memory, with a `CacheWarning` once.
+    Only functions with a signature are cached, because they are compiled while the module is loaded. `keep` reads
+    machine code from disk and writes it there; if that fails, the module is compiled in memory, with a `CacheWarning`
+    once.
     """
     with deferred():  # LLVM calls back into Python, where an interruption is lost
         if keep:
             try:
                 return _kept(text)
             except OSError as error:
-                _tell(f"machine code is not kept on disk but made anew in each session: {error}")
+                _tell(f"machine code is not cached on disk but compiled again in each session: {error}")
         name = _name(text)
         return _executed(text, name, f"<{name}>", keep=False)
 
@@ -139,7 +140,7 @@ def _kept(text):
     from numba import config
 
     if vars(config)["CACHE_DIR"]:
-        raise OSError("NUMBA_CACHE_DIR is set, so numba would put it elsewhere")
+        raise OSError("NUMBA_CACHE_DIR is set, so numba would store it elsewhere")
     name = _name(text, *_machine())
     entry = programs_folder() / name
     damaged = entry.exists() and not is_intact(entry)
@@ -148,10 +149,10 @@ def _kept(text):
     if entry.exists():
         return _beside(text, name, entry)
     with new_entry(entry) as made:
-        (made / f"{name}.py").write_text(text, encoding="utf-8")  # numba wants a file to put its own beside
+        (made / f"{name}.py").write_text(text, encoding="utf-8")  # numba stores its file next to this one
         module = _beside(text, name, made)
     if damaged:
-        _tell(f"{entry} was damaged, and is compiled anew")
+        _tell(f"{entry} was damaged and is compiled again")
     return module
 
 
@@ -159,7 +160,7 @@ def _beside(text, name, folder):
     """The module with machine code in the folder of its source."""
     place = folder / "__pycache__"
     place.mkdir(mode=0o700, exist_ok=True)
-    tempfile.TemporaryFile(dir=place).close()  # where numba cannot do this it goes elsewhere
+    tempfile.TemporaryFile(dir=place).close()  # if numba cannot write here it goes elsewhere
     return _executed(text, name, str(folder / f"{name}.py"), keep=True)
 
 
@@ -177,7 +178,7 @@ def _name(*parts):
 
 @cache
 def _machine():
-    """Versions and processor on which machine code depends besides its source."""
+    """Versions and processor that machine code depends on, besides its source."""
     import numba
     from llvmlite import binding
 

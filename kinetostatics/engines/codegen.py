@@ -1,7 +1,7 @@
 """Source code from recorded arithmetic: a compiled loop for numba, array operations for NumPy, plain Python numbers.
 
-`line_source`, `buffered_source` and `loop_source` write it; `PLAIN`, `BY_DESIGN` and `ARRAYS` hold the
-functions that its operations call.
+`line_source`, `buffered_source` and `loop_source` write it; `PLAIN`, `BY_DESIGN` and `ARRAYS` are the
+functions of its operations.
 """
 
 import math
@@ -22,7 +22,7 @@ from .graph import BY_ANGLE, Node, is_of_angle, needed
 from .simplify import drop_unused, fused_sums
 
 MAX_EXPONENT = math.log(np.finfo(float).max)
-"""Largest exponent whose exponential is a double."""
+"""Largest exponent with a finite exponential."""
 GIVEN, FILLED = "Array(float64, {}, 'C', True)", "Array(float64, {}, 'C')"
 """Numba types of arrays with {} axes: read by a loop (possibly read-only), and written by it."""
 ARGUMENTS = f"void({', '.join([GIVEN] * 5 + [FILLED]).format(2, 2, 2, 2, 3, 1)})"
@@ -68,7 +68,7 @@ def loop(angles, sines, cosines, parameters, tables, results):
         first = design * (angles.shape[0] > 1)
         table = design * (tables.shape[1] > 1)
         start = uint64(design) * uint64({{rows}}) * count"""
-"""Start of a loop. The count below 2^40 lets LLVM prove that rows of the results do not overlap: else no vectors."""
+"""Start of a loop. The count below 2^40 lets LLVM prove that rows of the results do not overlap, as vectors need."""
 TWO_SUM = """@njit(error_model="numpy")
 def two_sum(a, b):
     whole = a + b
@@ -131,8 +131,8 @@ def loop_source(outputs, fuse=True, kind="float64") -> str:
     """Source of a module with ``loop(angles, sines, cosines, parameters, tables, results)``.
 
     It reads angles (1 or designs, N) with their sines and cosines, parameters (designs, P) and tables (T, 1 or
-    designs, N), and fills results, a flat array of (designs, outputs, N); all of one `kind`, "float64" or "float32".
-    `fuse` allows fused multiply-adds, see `simplify`.
+    designs, N). It fills results, a flat array of (designs, outputs, N). All arrays have one `kind`, "float64" or
+    "float32". `fuse` allows fused multiply-adds, see `simplify`.
     """
     nodes = needed(outputs)
     sums = fused_sums(nodes) if fuse else {}
@@ -185,7 +185,7 @@ def line_source(outputs, argument_names="angle, sine, cosine, parameters, tables
 def buffered_source(outputs) -> tuple[str, int]:
     """Source of ``line(angle, sine, cosine, parameters, tables, buffers, results)`` on arrays; count of buffers.
 
-    Each operation writes into a buffer that is free again, or into its row of the results.
+    Each operation writes into a free buffer, or into its row of the results.
     """
     nodes = needed(outputs)
     rows: dict[Node, int] = {}
@@ -232,7 +232,7 @@ def buffered_source(outputs) -> tuple[str, int]:
 
 
 def _array_function(operation, count):
-    """Name of the array function of an operation of so many arguments."""
+    """Name of the array function of an operation with `count` arguments."""
     return f"{_WORDS.get(operation, operation)}{count}"
 
 
@@ -258,7 +258,7 @@ _IN_LINE = {
     "sign": "copysign(1.0, {})",
     **{f"if {sign}": f"{{2}} if {{0}} {sign} {{1}} else {{3}}" for sign in ("<", "<=", "==", ">=")},
 }
-"""Text of inputs, and of operations that are not functions of the same name, in a line."""
+"""Text of inputs, and of operations other than functions of the same name, in a line."""
 _IN_LOOP = {
     "parameter": "parameters[design, {}]",
     "table": "tables[{}, table, i]",
@@ -271,7 +271,7 @@ _IN_LOOP = {
     "lost": "lost{count}({all})",
     "root": "sqrt(max(zero, {0})) if {0} > threshold * {1} else no_number",
 }
-"""The same in a compiled loop."""
+"""Text of operations in a compiled loop."""
 
 
 def _defined(node, words=_IN_LINE):
@@ -326,7 +326,7 @@ def _plain_total(*terms):
 
 
 def compile_line(source, scope):
-    """Function `line` of a source, whose operations are looked up in a scope."""
+    """Function `line` of a source, with its operations from a scope."""
     scope = dict(scope)
     exec(source, scope)
     return scope["line"]

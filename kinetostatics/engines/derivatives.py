@@ -1,4 +1,4 @@
-"""Exact derivatives of recorded outputs, as further nodes of the same graph, which engines compile with it.
+"""Exact derivatives of recorded outputs, as further nodes of the same graph, compiled with it.
 
 Forward mode gives the derivative of every node by one parameter, reverse mode that of one output by every node
 (Griewank and Walther, *Evaluating Derivatives*, 2008, chapters 3.1 and 3.2). `gradients` uses the mode with fewer
@@ -35,7 +35,7 @@ def gradients(graph, outputs, parameters):
 def tangents(graph, outputs, slopes):
     """Derivatives of outputs along one direction, a tuple of nodes or numbers.
 
-    `slopes` maps inputs to their own derivatives along it, nodes or numbers; inputs that it lacks have derivative 0.
+    `slopes` maps inputs to their own derivatives along it, nodes or numbers; missing inputs have derivative 0.
     """
     slopes = dict(slopes)
     for node in needed(outputs):
@@ -50,7 +50,7 @@ def tangents(graph, outputs, slopes):
 
 
 def adjoints(graph, output, wanted, seed=1.0, stop_gradient_slope=0.0, ends=frozenset()):
-    """Derivatives of one output by each of the wanted nodes that it depends on: a dict of nodes or numbers.
+    """Derivatives of one output by the wanted nodes that it depends on: a dict of nodes or numbers.
 
     They are multiplied by `seed`. `stop_gradient_slope` is the derivative of `arithmetic.stop_gradient`: 0 for
     sensitivities, 1 for rounding errors. Nodes among `ends` count as independent.
@@ -100,8 +100,8 @@ _PARTIAL_DERIVATIVES: dict[str, Callable[..., tuple]] = {
     "root": lambda graph, node, square, unit: (0.5 / node, 0.0),
     "divisor": lambda graph, node, root, unit: (1.0, 0.0),
 }
-"""By operation: its derivatives by its arguments. Those by the guards of "root" and "divisor" are 0, since a guard acts
-only where rounding leaves no correct digit."""
+"""By operation: its derivatives by its arguments. Derivatives by the guards of "root" and "divisor" are 0, because a
+guard acts only where no digit is correct."""
 
 
 _FUNCTIONS: dict[str, Any] = BY_DESIGN | {
@@ -117,7 +117,7 @@ _FUNCTIONS: dict[str, Any] = BY_DESIGN | {
 class Evaluation:
     """Outputs of a graph on arrays that broadcast, by NumPy operation by operation.
 
-    It suits a few calls, where writing and compiling source costs more than it saves. Each array is released after its
+    It is for a few calls, where writing and compiling source costs more than it saves. Each array is released after its
     last use, so the next one reuses memory that is still in the cache.
     """
 
@@ -132,7 +132,7 @@ class Evaluation:
         self._steps = [(node, _FUNCTIONS[node.operation], node.arguments, spent[node]) for node in computed]
 
     def __call__(self, inputs):
-        """Values of the outputs, a list of numbers and arrays, from those of all inputs, a mapping by node."""
+        """Values of the outputs, a list of numbers and arrays, from the values of all inputs, a mapping by node."""
         values = dict(inputs)
         for node, function, arguments, spent in self._steps:
             values[node] = function(*[values[part] if part.__class__ is Node else part for part in arguments])

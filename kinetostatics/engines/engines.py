@@ -40,8 +40,8 @@ class Kernels:
 
     def with_bounds(self, state, names, tight=False):
         raise NotGivenError(
-            f"{state.mechanism.name}: bounds belong to recorded arithmetic, and this solution is computed by the "
-            "kernels themselves, or in another way; solve it with plain numbers"
+            f"{state.mechanism.name}: bounds need recorded arithmetic, but this solution is computed by the "
+            "kernels themselves or by another method; solve it with plain numbers"
         )
 
 
@@ -75,7 +75,7 @@ class Recorded:
         return program.recording.named(read_only(rows))
 
     def with_bounds(self, state, names, tight=False):
-        """Values by name, and by name bounds on their rounding errors, infinite or NaN where there is none.
+        """Values by name, and bounds on their rounding errors by name, infinite or NaN without a bound.
 
         `NotGivenError` if the kernels cannot be recorded, or code of the user's rounds in an unknown way.
         """

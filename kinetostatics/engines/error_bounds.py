@@ -1,15 +1,16 @@
 """Proven bounds on the rounding errors of recorded outputs, as further nodes of the same graph.
 
-Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3): beside each value
-v stand a number k, which the structure fixes, and E, which is computed with the value. The exact result is within
-``unit (k |v| + E)`` of v. Products, quotients and roots of values with few relative errors (k) have few as well; E
-begins where sums cancel. One table of rules serves every arithmetic; engines see only the recorded operations.
+Running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, section 3.3): each value v has a
+number k, fixed by the structure, and E, computed with the value. The exact result is within ``unit (k |v| + E)`` of v.
+Products, quotients and roots of values with few relative errors (k) have few as well; E is needed where sums cancel.
+One table of rules serves every arithmetic; engines see only the recorded operations.
 
 Tight bounds follow from the adjoints of one output. With coefficients c of the computed values the error of a value is
 exactly the sum of c e over its arguments, its own rounding, and q of second order. So the error of the output is the
 sum of a (own + q) over all values, with their adjoints a (Linnainmaa 1976, *BIT* 16, 146; Langlois 2001, *BIT* 41,
-606). Running bounds C with terms of second order and underflow ``STRETCH`` times as large are at least
-sum |a| STRETCH q, so C / STRETCH covers all q; twice that covers the rounding of the adjoints and of products of k too.
+606). Let C be running bounds with terms of second order and underflow ``STRETCH`` times as large. They are at least
+sum |a| STRETCH q, so C / STRETCH covers all q. Twice that also covers the rounding of the adjoints and of products of
+k.
 """
 
 import math
@@ -28,23 +29,23 @@ from .graph import BY_ANGLE, BY_DESIGN, INPUTS, Node, is_negative, is_of_angle, 
 SAFE = 1.0 + 1e-9
 """Factor on bounds for the rounding of their own arithmetic and for products of counted roundings."""
 CAP = 2.0**100
-"""Largest number of a scene, in SI units, for which bounds are given; rows of tables may be larger."""
+"""Largest number of a scene, in SI units, with bounds; rows of tables may be larger."""
 MAX_DIVISOR = 2.0**1000
 """A divisor up to this size has a reciprocal with all digits."""
 TURN_SHARE = 4.5
-"""A sine or cosine near 1 is off by at most this share of the other one squared, in any precision."""
+"""Largest error of a sine or cosine near 1, relative to the other one squared, in any precision."""
 LOST_SQUARE = 2.0**-900
-"""In units: underflow of the square of a sine or cosine."""
+"""Underflow of the square of a sine or cosine, in units."""
 SECOND_ORDER = 8.0
-"""Roundings of an operation that make terms of second order, beside those of its arguments."""
+"""Roundings of an operation in terms of second order, besides those of its arguments."""
 SUMS = {"+", "-"}
-"""Operations that need the whole bound of a part, not its two numbers."""
+"""Operations that need the total bound of a part, not its two numbers."""
 CHARGED = 2.0
-"""Roundings of both parts from which on the rounding of their sum is added to theirs, which takes no operation."""
+"""Number of roundings of both parts above which the rounding of their sum is added to it, without an operation."""
 STRETCH = 2.0**16
-"""Factor on terms of second order in the running bounds that a tight bound takes its remainder from."""
+"""Factor on terms of second order in the running bounds that give the remainder of a tight bound."""
 SEED = 2.0**900
-"""Adjoint of the output of a tight bound: no adjoint that counts underflows."""
+"""Adjoint of the output of a tight bound: no significant adjoint underflows."""
 
 
 class Arithmetic(NamedTuple):
@@ -128,7 +129,7 @@ class ErrorBounds:
         self._peaks: dict[Node, tuple[int, Any]] = {}
 
     def of(self, outputs):
-        """A bound for each output, not negative; infinite or NaN where there is none.
+        """A bound for each output, not negative; infinite or NaN without a bound.
 
         `NotGivenError` if code of the user's rounds in an unknown way, or terms of second order may be too large.
         """
@@ -136,13 +137,13 @@ class ErrorBounds:
         return tuple(map(self._whole, outputs))
 
     def look_at(self, outputs):
-        """Find the errors of all nodes that outputs are computed from."""
+        """Find the errors of all nodes that outputs depend on."""
         nodes = [node for node in needed(outputs) if node not in self._errors]
         for node in nodes:
             for part in node.arguments:
                 self._users.setdefault(part, set()).add(node.operation)
         for node in nodes:
-            if node in self._errors:  # an input has asked for it
+            if node in self._errors:  # an input needed it before
                 continue
             error = self._errors[node] = self._error_of(node)
             if self._cuts is not None and self._cuts(node, error):
@@ -154,7 +155,7 @@ class ErrorBounds:
         total = self.total(part)
         if total is None:
             return 0.0
-        own = None if is_zero(total) else self.arithmetic.dust  # what the bound itself may lose
+        own = None if is_zero(total) else self.arithmetic.dust  # possible loss of the bound itself
         bound = self.fused(self.off, total, product(self.off, own))
         if part in self._peaks:
             bound = bound + 0.0 / self._positive_part(self.arithmetic.limit - self._peaks[part][1])
@@ -173,12 +174,12 @@ class ErrorBounds:
         return Error(float(finer < 1.0) + finer * relative, plus(product(finer, rest), self.arithmetic.dust))
 
     def _require_small(self, node):
-        """Check that terms of second order are small; keep the largest number that a node is computed from."""
+        """Check that terms of second order are small; keep the largest number that a node depends on."""
         parts = [] if is_handed_over(node) else [part for part in node.arguments if isinstance(part, Node)]
         depth = 1 + max((self._peaks[part][0] for part in parts), default=0)
         unit, safe = self.arithmetic.unit, self.arithmetic.safe
         if depth * (self._errors[node].relative + SECOND_ORDER) * unit > (safe - 1.0) / 4.0:
-            raise NotGivenError("no bound can be given in this precision: too many operations follow one another")
+            raise NotGivenError("no bound can be given in this precision: there are too many operations in a row")
         peaks = [self._peaks[part][1] for part in parts]
         if not parts or node.operation in ("+", "-", "*", "/", "divisor", "exp"):
             peaks.append(self.largest(node))
@@ -198,23 +199,23 @@ class ErrorBounds:
         return EXACT if exact else Error(1.0, dust)
 
     def total(self, part, more=0.0):
-        """The whole bound of a part of an operation, in units, and `more` roundings of it; None where it is exact."""
+        """The total bound of a part of an operation, in units, and `more` roundings of it; None if it is exact."""
         relative, rest = self.error(part)
         relative += more
         if not relative:
             return rest
-        if part in self.factors and self._users.get(part, SUMS) <= SUMS:  # by factors: it takes no magnitude of its own
+        if part in self.factors and self._users.get(part, SUMS) <= SUMS:  # by factors: it needs no magnitude
             left, own, right, across = self.factors[part]
             return self.fused(self.size(right), self.fused(relative, self.size(left), own), across)
         return self.fused(relative, self.size(part), rest)
 
     def largest(self, part):
-        """Bound on the magnitude of the exact value, but for its relative errors."""
+        """Bound on the magnitude of the exact value, without its relative errors."""
         rest = self.error(part).rest if self.weight else None
         return self.size(part) if rest is None else self.fused(self.weight * self.off, rest, self.size(part))
 
     def above(self, value, total):
-        """A value less its error in units; 0 where the error is larger."""
+        """A value less its error in units; 0 if the error is larger."""
         exact = total is None or not self.weight
         return self._positive_part(value if exact else value - (self.weight * self.off) * total)
 
@@ -222,12 +223,12 @@ class ErrorBounds:
         return self.graph.node("divisor", value, 0.0) if isinstance(value, Node) else max(value, 0.0)
 
     def doubt(self, part):
-        """0 where the magnitude of a part exceeds its error; infinite or NaN elsewhere, None if it is exact."""
+        """0 if the magnitude of a part exceeds its error, otherwise infinite or NaN; None if it is exact."""
         total = self.total(part) if self.weight else None
         return total if total is None or is_zero(part) else 0.0 / self.clear(part)
 
     def clear(self, part):
-        """Magnitude of a part less its error; 0 where the error is larger."""
+        """Magnitude of a part less its error; 0 if the error is larger."""
         total = self.total(part)
         return self.size(part) if total is None else self.above(self.size(part), total)
 
@@ -239,12 +240,12 @@ class ErrorBounds:
         return self.fused(0.0, clear, 1.0 / clear)
 
     def underflow(self, rest, part):
-        """A rest that only underflow causes times the magnitude of a part: a number where its `cap` is known."""
+        """A rest from underflow times the magnitude of a part: a number if its `cap` is known."""
         cap = None if rest is None else self.cap(part)
         return product(rest, self.largest(part) if cap is None else 2.0 * cap)
 
     def cap(self, part):
-        """Largest magnitude of a part for numbers up to `CAP`; None where only the value tells."""
+        """Largest magnitude of a part for numbers up to `CAP`; None if it depends on the value."""
         if not isinstance(part, Node):
             return abs(part)
         if part not in self._caps:
@@ -261,7 +262,7 @@ class ErrorBounds:
         return abs(above) == 1.0 and (self.cap(below) or math.inf) < MAX_DIVISOR
 
     def rounds(self, *factors):
-        """Roundings of a product or quotient: none with a sign or a power of two near one, but for underflow."""
+        """Roundings of a product or quotient: none, except underflow, for a sign or a power of two near one."""
         for part in factors if self.arithmetic.as_recorded else ():
             is_power = not isinstance(part, Node) and math.frexp(part)[0] in (0.5, -0.5) and 0.01 < abs(part) < 100.0
             if is_power or getattr(part, "operation", None) == "sign":
@@ -269,7 +270,7 @@ class ErrorBounds:
         return 1.0
 
     def fused(self, one, other, more):
-        """Product and sum, in one operation where the processor has it."""
+        """Product and sum, in one operation if the processor has it."""
         plain = [part for part in (one, other) if not isinstance(part, Node)]
         if more is None or len(plain) == 2 or 1.0 in plain:
             return plus(one * other, more)
@@ -284,7 +285,7 @@ class ErrorBounds:
         return part if self.is_positive(part) else abs(part)
 
     def is_positive(self, part):
-        """Whether a part cannot be negative, whatever the numbers."""
+        """Whether a part cannot be negative, for any numbers."""
         if not isinstance(part, Node):
             return part >= 0.0
         if part not in self._positive:
@@ -321,7 +322,7 @@ def _of_sum(bounds, node, *parts):
     if len(others) < 2 and moved is None:
         return bounds.error(others[0]) if others else EXACT
     own, more = 0.0 if any(map(is_zero, parts)) else 1.0, 0.0
-    if own and min(bounds.error(part).relative for part in parts) >= CHARGED:  # a sum is at most its parts together
+    if own and min(bounds.error(part).relative for part in parts) >= CHARGED:  # a sum is at most the sum of its parts
         own, more = 0.0, 1.0
     return Error(own, reduce(plus, (bounds.total(part, more) for part in others), plus(moved, flushed)))
 
@@ -330,7 +331,7 @@ def _of_total(bounds, node, *parts):
     """Sum of the errors; of a length and its rest together, only the error of the rest."""
     if node.varies == BY_DESIGN and bounds.arithmetic.as_recorded:
         more = 8.0 * bounds.graph.node("lost", *parts)
-    else:  # compensated sums lose what is small of third order, or of second where products are fused with them
+    else:  # compensated sums have errors of third order, or of second order if products are fused
         share = (2.0 * (len(parts) - 1)) ** 3 * bounds.arithmetic.unit ** (2 if bounds.arithmetic.as_recorded else 1)
         more = plus(share * reduce(plus, map(bounds.largest, parts)), bounds.arithmetic.dust)
     signed = [(-1, part.arguments[0]) if is_negative(part) else (1, part) for part in parts]
@@ -349,7 +350,7 @@ def _of_total(bounds, node, *parts):
 
 
 def _of_product(bounds, node, left, right):
-    if is_zero(node):  # exact, or NaN where the other factor is
+    if is_zero(node):  # exact, or NaN if the other factor is NaN
         total = bounds.total(right if isinstance(right, Node) else left)
         return Error(0.0, 0.0 * total) if isinstance(total, Node) else EXACT
     own, more = bounds.rounds(left, right), bounds.arithmetic.dust
@@ -398,7 +399,7 @@ def _of_root(bounds, node, square, unit=None):
 
 
 def _of_function(bounds, node, argument):
-    """Of a function whose slope is at most 1, and its change too."""
+    """Error of a function with a slope of at most 1, and a change of slope of at most 1."""
     total = bounds.total(argument)
     rest = plus(total, None if bounds.arithmetic.as_recorded else bounds.arithmetic.dust)
     if total is not None and bounds.weight > 1.0:
@@ -421,15 +422,15 @@ def _of_logarithm(bounds, node, value):
 
 
 def _of_magnitude(bounds, node, value):
-    """Linear only where the sign is known, which the terms of second order take for granted."""
+    """Linear only if the sign is known, which the terms of second order assume."""
     relative, rest = bounds.error(value)
     return Error(relative, plus(rest, bounds.doubt(value) if bounds.weight > 1.0 else None))
 
 
 def _of_guarded(bounds, node, value, unit):
-    """Exact arithmetic has no guard: the error has the distance by which it moves the value."""
+    """Exact arithmetic has no guard, so the error includes its shift of the value."""
     relative, rest = bounds.error(value)
-    own = 0.0 if bounds.arithmetic.as_recorded else 2.0  # of values near the guard, which both are rounded
+    own = 0.0 if bounds.arithmetic.as_recorded else 2.0  # of values near the guard; both are rounded
     return Error(relative + own, bounds.fused(1.0 / bounds.arithmetic.unit, node - value, rest))
 
 
@@ -465,8 +466,8 @@ CAPS: dict[str, Callable[..., float]] = {
 def _beside_one(bounds, node):
     """Bound on the error, in units, of a sum of one and a sine or cosine of the crank angle; None for other nodes.
 
-    Where the sum vanishes, as linkages fold, its error does so as well, which the error of the function does not
-    show. Along an axis the function is times a sign of the design: its doubt makes the whole bound infinite.
+    Where the sum vanishes, as when linkages fold, its error vanishes as well, unlike the error of the function. Along
+    an axis the function is times a sign of the design, whose doubt makes the bound infinite.
     """
     if len(node.arguments) != 2:
         return None
@@ -483,12 +484,12 @@ def _beside_one(bounds, node):
     other = bounds.graph.node("cos" if turn.operation == "sin" else "sin", *turn.arguments)
     unsure = None if sign is None else bounds.total(sign)
     square = (-TURN_SHARE / bounds.arithmetic.unit) * (other * other)
-    most = -plus(OWN.ulp, unsure)  # of every precision: it is rounded once
+    most = -plus(OWN.ulp, unsure)  # for every precision: it is rounded once
     return -bounds.graph.node("divisor", square - plus(LOST_SQUARE, unsure), most)
 
 
 def _moved_apart(parts, unit):
-    """Distance, in units, by which `arithmetic.offset_from_zero` moved a number off zero; None where it did not."""
+    """Distance, in units, by which `arithmetic.offset_from_zero` moved a number off zero; None if it did not."""
     for part in parts:
         if not isinstance(part, Node):
             if part == RELATIVE_OFFSET * NEGLIGIBLE_LENGTH:
@@ -509,7 +510,7 @@ def running_bounds(graph, inputs, outputs, arithmetic=OWN):
 
 
 def tight_bounds(graph, inputs, outputs, arithmetic=OWN):
-    """A bound for each output, as `ErrorBounds.of`, smaller where errors cancel; NaN where only running bounds hold."""
+    """A bound for each output, as `ErrorBounds.of`, smaller if errors cancel; NaN if only running bounds exist."""
     plain = ErrorBounds(graph, inputs, arithmetic)
     stretched = arithmetic if arithmetic.dust is None else arithmetic._replace(dust=STRETCH * arithmetic.dust)
     running = ErrorBounds(graph, inputs, stretched, plain, STRETCH)
@@ -520,8 +521,8 @@ def tight_bounds(graph, inputs, outputs, arithmetic=OWN):
 def _tight_bound(output, most, running, plain):
     """Bound of first order by adjoints of the values that are used more than once, and the remainder.
 
-    Errors of other values add up as running bounds up to their users. Divisors and squares are cut as well: their
-    errors many products share.
+    Errors of other values add up as running bounds up to their users. Divisors and squares are cut as well, because
+    many products share their errors.
     """
     if not isinstance(most, Node):
         return most
@@ -555,7 +556,7 @@ def _tight_bound(output, most, running, plain):
     return -graph.node("divisor", -first.fused(2.0 / STRETCH, most, bound), -most)
 
 
-# Bounds as users have them
+# Bounds for users
 
 
 def of_magnitude(vector, bounds):
@@ -564,7 +565,7 @@ def of_magnitude(vector, bounds):
 
 
 def where_known(values, bounds):
-    """Bounds for users: infinite where none is proven, NaN where there is no value."""
+    """Bounds for users: infinite without proof, NaN without a value."""
     return np.where(np.isnan(values), np.nan, np.where((bounds >= 0.0) & ~np.isinf(values), bounds, np.inf))
 
 

@@ -1,7 +1,7 @@
-"""Recorded arithmetic: numbers that write down every operation as nodes of a graph, without branches.
+"""Recorded arithmetic: numbers that record every operation as nodes of a graph, without branches.
 
-A graph keeps each operation once. `record` fills it with the kernels' arithmetic, `derivatives` adds to it, `codegen`
-writes source from it; the number of operations at each crank angle is its cost.
+A graph contains each operation once. `record` fills it with the kernels' arithmetic, `derivatives` adds to it,
+`codegen` writes source from it; the number of operations at each crank angle is its cost.
 """
 
 from typing import Any
@@ -12,7 +12,7 @@ from ..numbers.arithmetic import RELATIVE_OFFSET
 from ..numbers.planar import SymbolicZero
 
 BY_DESIGN, BY_ANGLE = range(2)
-"""The value of a node varies with the design alone, or with the crank angle as well."""
+"""Whether the value of a node varies only with the design, or also with the crank angle."""
 OTHERS = (np.ndarray, SymbolicZero)
 """Operands that combine with a node by their own arithmetic."""
 INPUTS = ("angle", "parameter", "table")
@@ -36,7 +36,7 @@ def _method(operation) -> Any:
 
 
 class Node:
-    """A recorded number: an operation, its arguments, and what it varies with."""
+    """A recorded number: an operation, its arguments, and its dependence."""
 
     __slots__ = ("arguments", "graph", "index", "operation", "varies")
 
@@ -62,7 +62,7 @@ class Node:
         return self.graph.node("rest", length, x, y)
 
     def _unknown(self, other=None):
-        raise TypeError("the value of a recorded number is not known yet: kernels must not branch on values")
+        raise TypeError("the value of a recorded number is unknown while recording: kernels must not branch on values")
 
     __bool__ = __float__ = __int__ = __eq__ = __ne__ = __lt__ = __le__ = __gt__ = __ge__ = _unknown
     __hash__ = object.__hash__
@@ -87,7 +87,7 @@ class Graph(list):
 
     def node(self, operation, *arguments):
         arguments = tuple(part if isinstance(part, Node) else float(part) for part in arguments)
-        if operation in "+-":  # without negations of its terms, the same to the last bit
+        if operation in "+-":  # without negations of its terms, equal to the last bit
             *left, right = arguments
             if is_negative(right):
                 operation, right = "-" if operation == "+" else "+", right.arguments[0]
@@ -154,7 +154,7 @@ def operations(outputs):
 
 
 def parted(outputs):
-    """Split outputs: values fixed by the design, and outputs of a graph with these as parameters."""
+    """Split outputs: values fixed by the design, and outputs of a graph with them as parameters."""
     graph = Graph()
     parameters: list[tuple[Node | float, Node]] = []
     nodes: dict[Node, Node] = {}

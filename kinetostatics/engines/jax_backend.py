@@ -1,8 +1,8 @@
 """Backends of a program: NumPy, compiled loop or JAX (extra `grad`), in double or single precision, on a device.
 
-For JAX and single precision a program is split: values fixed by the design, sines and cosines of the crank angle and
-rows of tables are computed in double and rounded once; the operations at each crank angle follow in the precision
-asked for. So a crank angle may be a million turns, and masses may nearly cancel.
+For JAX and single precision a program is split. Values fixed by the design, sines and cosines of the crank angle, and
+rows of tables are computed in double and rounded once. The operations at each crank angle follow in the requested
+precision. So a crank angle may be a million turns, and masses may nearly cancel.
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from .numba_backend import load_compiled
 from .program import Program, numpy_sines
 
 PROVEN = "cpu"
-"""Platform whose functions have the errors that bounds assume, as a test shows."""
+"""Platform whose function errors are proven by a test, as the bounds assume."""
 AS_WRITTEN = {
     "xla_disable_hlo_passes": "algsimp",
     "xla_cpu_enable_fast_math": False,
@@ -36,13 +36,13 @@ def _jax():
     except ImportError as error:
         raise MissingLibraryError(
             f'engine="jax" needs JAX, which {"is not installed" if error.name == "jax" else f"fails: {error}"}: '
-            'pip install "kinetostatics[grad]"; engine="numpy" works without'
+            'pip install "kinetostatics[grad]"; engine="numpy" works without it'
         ) from None
     return jax
 
 
 def device_of(platform=None):
-    """The first device of JAX, an accelerator if there is one, or of a platform; `ParameterError` if it finds none."""
+    """The first device of JAX, an accelerator if there is one, or of a platform; `ParameterError` if there is none."""
     jax = _jax()
     if platform is None:
         return jax.devices()[0]
@@ -79,7 +79,7 @@ class DeviceProgram:
         dtype = given.angle.dtype
         home: Any = jax if hasattr(jax, "enable_x64") else import_module("jax.experimental")
         with jax.default_device(self._device), home.enable_x64(dtype == np.float64):
-            # one array of all: a transfer for each would take longer than computing
+            # one array for all: separate transfers would take longer than the computation
             inputs = (np.array(np.broadcast_arrays(*parts), dtype) for parts in (given.parameters, given.rows))
             arrays = *given[:3], *inputs
             key = dtype, given.shape, *(part.shape for part in arrays)
@@ -131,7 +131,7 @@ class MixedPrecision:
     def _fixed_by(self, numbers):
         try:
             return self._fixed(0.0, 0.0, 1.0, numbers, ())
-        except (ZeroDivisionError, OverflowError):  # plain numbers raise it, those of NumPy answer with infinity or NaN
+        except (ZeroDivisionError, OverflowError):  # plain numbers raise it, NumPy numbers give infinity or NaN
             return self._fixed(0.0, 0.0, 1.0, [np.float64(part) for part in numbers], ())
 
     def by_numpy(self, given):
@@ -189,14 +189,14 @@ class Backend:
         return rows if state.shape else rows[:, 0]
 
     def bounds(self, program, state, leaves, tight=False):
-        """Bounds (outputs, *shape), in double, on the errors of the outputs of `run`; infinite or NaN without one.
+        """Bounds (outputs, *shape), in double, on the errors of the outputs of `run`; infinite or NaN without a bound.
 
-        `tight` needs `is_own`. `NotGivenError` if the rounding of user code, or of a device, is not known.
+        `tight` needs `is_own`. `NotGivenError` if the rounding of user code, or of a device, is unknown.
         """
         if self.engine == "jax" and (device := device_of(self.platform)).platform != PROVEN:
             raise NotGivenError(
-                f"no bound can be given on {device_name(device)}: how its functions round has not been tested; compile "
-                f'the program with device="{PROVEN}", engine="numpy" or engine="compiled" to have one'
+                f"no bound can be given on {device_name(device)}: the rounding of its functions is untested; compile "
+                f'the program with device="{PROVEN}", engine="numpy" or engine="compiled" to get one'
             )
         compiled = self.engine == "compiled"
         if self.is_own:

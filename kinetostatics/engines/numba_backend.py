@@ -1,7 +1,7 @@
 """Compiled loops over designs and crank angles, by numba (extra `fast`).
 
-Sines and cosines of the crank angle are computed first, in a loop of their own, and shared by all designs; those of the
-last crank angles are kept. Large tasks run in threads.
+Sines and cosines of the crank angle are computed first, in a separate loop, and shared by all designs; those of the
+last crank angles are cached. Large tasks run in threads.
 """
 
 import importlib
@@ -27,7 +27,7 @@ def _problem():
     numba = sys.modules.get("numba")
     try:
         numba = numba or importlib.import_module("numba")
-    except ImportError as error:  # not there, or installed beside a NumPy that it does not know, for instance
+    except ImportError as error:  # missing, or installed with an incompatible NumPy, for example
         why = "is not installed" if error.name == "numba" else f"cannot be imported: {error}"
         return f'{why}: pip install "kinetostatics[fast]"'
     return "compiles nothing while NUMBA_DISABLE_JIT is set: unset it" if numba.config.DISABLE_JIT else None
@@ -41,12 +41,12 @@ def numba_available():
 def require_numba():
     """Raise `MissingLibraryError` unless numba is available."""
     if problem := _problem():
-        raise MissingLibraryError(f'the compiled engine needs numba, which {problem}; engine="numpy" works without')
+        raise MissingLibraryError(f'the compiled engine needs numba, which {problem}; engine="numpy" works without it')
 
 
 @cache
 def load_compiled(text):
-    """Module of a source, with machine code kept on disk."""
+    """Module of a source, with machine code cached on disk."""
     from .code_cache import load_module
 
     require_numba()
@@ -54,12 +54,12 @@ def load_compiled(text):
 
 
 MAX_KEPT_ANGLES = 10_000
-"""Largest number of crank angles whose values are kept."""
+"""Largest number of crank angles with cached values."""
 _last = threading.local()
 
 
 def keep_for_same_angles(compute):
-    """Decorate a function of an array of crank angles: each thread keeps the result of its last call."""
+    """Decorate a function of an array of crank angles: each thread caches the result of its last call."""
 
     @wraps(compute)
     def computed(angle):
@@ -76,16 +76,16 @@ def keep_for_same_angles(compute):
 
 
 def forget_angles():
-    """Drop the kept results of this thread, so that the next timed call computes them."""
+    """Drop the cached results of this thread, so that the next timed call computes them."""
     _last.__dict__.clear()
 
 
 VALUES_A_THREAD = 100_000
-"""Values (designs * angles) that justify a thread of their own."""
+"""Values (designs * angles) that justify a separate thread."""
 VECTOR_NUMBERS = 8
 """Doubles in the largest vector register."""
 NO_ROWS = np.empty((0, 1, 0))
-"""Tables of a loop without any."""
+"""Tables of a loop without tables."""
 
 
 @keep_for_same_angles

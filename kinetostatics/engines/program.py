@@ -1,7 +1,7 @@
 """Programs: one recording for all scenes of a structure, run on plain numbers, by NumPy, or as a compiled loop.
 
-`program_of` keeps programs by structure; `plausibility_test` is a fast test of a scene's numbers, compiled once per
-structure: only scenes that fail it get the full test.
+`program_of` caches programs by structure; `plausibility_test` is a fast test of a scene's numbers, compiled once per
+structure: only scenes that fail get the full test.
 """
 
 import math
@@ -25,15 +25,15 @@ from .numba_backend import keep_for_same_angles, load_compiled, numba_available
 from .record import Recorder, record
 
 MAX_PLAIN_ANGLES = 12
-"""Largest number of crank angles that are computed one by one on plain numbers."""
+"""Largest number of crank angles computed one by one on plain numbers."""
 MIN_LONG_OPERATIONS, MIN_COMPILED_OPERATIONS = 300, 20_000_000
-"""Operations of a program that is compiled even for few angles, once it has computed so many operations in all."""
+"""Total number of operations after which a program is compiled even for few angles."""
 BUFFER_VALUES = 2048
 """Values in one buffer of array operations."""
 
 
 class Program:
-    """Outputs of a `Recording`, all of them or others of its graph, ready to run."""
+    """Outputs of a `Recording`, or of other nodes of its graph, ready to run."""
 
     def __init__(self, recording, outputs=None):
         self.recording = recording
@@ -54,8 +54,8 @@ class Program:
         """
         if self.unrecorded:
             raise NotGivenError(
-                f"derivatives cannot be given: {', '.join(self.unrecorded)} does more than arithmetic with "
-                "sin, cos and sqrt of `arithmetic`, so how its values hang on the parameters is not recorded"
+                f"no derivatives exist: {', '.join(self.unrecorded)} does more than arithmetic with "
+                "sin, cos and sqrt of `arithmetic`, so the dependence of its values on the parameters is not recorded"
             )
         parameters = [self.recording.parameters[place] for place in places]
         return self.kept(places, lambda: self._with(*gradients(self.recording.graph, self.outputs, parameters)))
@@ -65,10 +65,10 @@ class Program:
         return Program(self.recording, (*self.outputs, *(part for row in more for part in row)))
 
     def bounded(self, tight=False, arithmetic=OWN):
-        """Program of all outputs and a proven bound on the error of each, infinite or NaN where there is none.
+        """Program of all outputs and a proven bound on the error of each, infinite or NaN without a bound.
 
-        Tight ones may be so where the others are finite. `NotGivenError` if an output depends on user code that could
-        not be recorded, or on a cam made of samples.
+        Tight bounds may be infinite where running bounds are finite. `NotGivenError` if an output depends on user code
+        that could not be recorded, or on a cam made of samples.
         """
         bounds = tight_bounds if tight else running_bounds
         inputs = self.recording.graph, self.recording.inputs, self.outputs, arithmetic
@@ -101,7 +101,7 @@ class Program:
         return load_compiled(loop_source(self.outputs, fuse=False)).loop
 
     def rows(self, state, leaves):
-        """Rows of the tables at the crank angles of a `Dynamics` with its leaves; 0 where no output needs them."""
+        """Rows of the tables at the crank angles of a `Dynamics` with its leaves; 0 if no output needs them."""
         rows: list[Any] = []
         for table in self.recording.tables:
             rows += table.filled(state, leaves, self._rows_needed)
@@ -147,13 +147,13 @@ class Program:
                         free = _memory.held.view(own.dtype)[: count * own.shape[1]].reshape(count, own.shape[1])
                         single(angle[part], sine[part], cosine[part], numbers, given, free, own)
                     return results
-                except ZeroDivisionError:  # plain numbers raise it, those of NumPy answer with infinity or NaN
+                except ZeroDivisionError:  # plain numbers raise it, NumPy numbers give infinity or NaN
                     numbers = list(map(np.float64, numbers))
             batch(angle, sine, cosine, numbers, rows, np.empty((count, *shape), results.dtype), results)
         return results
 
     def _has_paid(self, count):
-        """Whether all computations of few angles so far took longer than compiling.
+        """Whether all computations of few angles so far took longer than a compilation.
 
         From then on the loop computes them, with the same bits except for the arc tangent.
         """
@@ -178,7 +178,7 @@ class Program:
     def _at(self, numbers, angle, sine, cosine):
         try:
             return self._plain(angle, sine, cosine, numbers, ())
-        except (ZeroDivisionError, OverflowError):  # arrays answer with infinity or NaN
+        except (ZeroDivisionError, OverflowError):  # arrays give infinity or NaN
             return self.by_numpy(np.array([angle]), numbers, (), (1,))[:, 0].tolist()
 
     def by_loop(self, angle, numbers, rows, shape, loop=None, sines=numba_backend.compiled_sines):
@@ -215,20 +215,20 @@ _memory = threading.local()
 """Scratch buffers, reused in each thread; allocating costs more than the computation."""
 
 
-# Programs kept by structure
+# Programs cached by structure
 
 
 def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Program, Leaves]:
     """Program of some quantities for the structure of a `Dynamics`, and the leaves of that `Dynamics`.
 
-    Recorded at the first call for a structure; at every call for scenes with objects that may change unseen, which
-    `lasting` refuses. `quantities` and `sizes` as in `record.record`. `NotGivenError` if a group or load of the user's
-    own cannot be recorded.
+    It is recorded at the first call for a structure. Scenes with objects that may change unnoticed are recorded at
+    every call, unless `lasting` refuses them. `quantities` and `sizes` are as in `record.record`. `NotGivenError` if a
+    user's group or load cannot be recorded.
     """
     structure, leaves = state.apart
     if not leaves.lasting or state.way is not None:
         if lasting:
-            raise NotGivenError(f"{state.mechanism.name} holds what may change unseen, to be recorded each time")
+            raise NotGivenError(f"{state.mechanism.name} has parts that may change unnoticed, so no recording is valid")
         return _recorded(state, structure, quantities, sizes), leaves
     known = state.kind.known
     found = known.get((quantities, sizes))
@@ -250,7 +250,7 @@ def _recorded(state, structure, quantities, sizes):
         raise
     except (TypeError, AttributeError) as error:
         raise NotGivenError(
-            f"the compiled engine cannot take {state.mechanism.name}: a group or load of it does more than arithmetic "
+            f"the compiled engine cannot run {state.mechanism.name}: a group or load of it does more than arithmetic "
             f'with sin, cos and sqrt of `arithmetic` ({error}); use engine="numpy"'
         ) from error
 
@@ -258,7 +258,8 @@ def _recorded(state, structure, quantities, sizes):
 def plausibility_test(kind, judged=()):
     """Function of a scene's numbers that returns its extent over its shortest length, and whether hints may be due.
 
-    None if the scene cannot be recorded. `judged` holds pairs of a leaf and its usual range, a `checks.PlausibleRange`.
+    None if the scene cannot be recorded. `judged` are pairs of a leaf and its plausible range, a
+    `checks.PlausibleRange`.
     """
     outputs = []
 

@@ -1,8 +1,8 @@
-"""Recording: the kernels run once on numbers that write down every operation.
+"""Recording: the kernels run once on numbers that record every operation.
 
 Groups, loads, names, absent parts and the assembly mode of a scene form its structure; the recorded arithmetic is valid
-for all scenes of that structure, whatever their numbers. Outputs become NaN where a group they depend on is open, even
-if no arithmetic links them, as for the weight of the crank, zero moments, or energies beside a massless group.
+for all scenes of that structure, with any numbers. Outputs become NaN where a group they depend on is open. That holds
+even if no arithmetic links them, as for the weight of the crank, zero moments, or energies of massless groups.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ ROOTS = ("root", "sqrt")
 class Gaps:
     """Makes outputs NaN where a group they depend on is open.
 
-    The roots below a node are bits of an integer, one for each root of the graph.
+    The roots below a node are bits of an integer, one per root of the graph.
     """
 
     def __init__(self, graph, scene):
@@ -52,7 +52,7 @@ class Gaps:
             self._bits.append(bits)
 
     def added(self, output, name):
-        """An output plus 0 times each root that it lacks; roots that lie below another are left out."""
+        """An output plus 0 times each root that it lacks; roots below another root are left out."""
         parts = (np.ravel(part)[0] for part in coordinates(self._placement, self._behind[name]))
         missing = self._of(parts) & ~self._of([output])
         for place, root in reversed([*enumerate(self._roots)]):
@@ -71,7 +71,7 @@ class Gaps:
 
 
 WITHOUT_GAPS = ("closure", *FRICTION_CHECKS)
-"""Quantities that report gaps themselves, and so stay numbers there."""
+"""Quantities that report gaps themselves, and so remain numbers there."""
 
 
 class Table(NamedTuple):
@@ -84,7 +84,7 @@ class Table(NamedTuple):
     compute : function
         ``compute(motion, leaves) -> rows`` for the motion and leaves of any scene of the structure.
     moved_by : str
-        User code whose dependence on parameters is not recorded; "" without.
+        User code whose dependence on parameters is not recorded; "" if there is none.
     names : tuple of (str, int, str)
         Name of each row, its order of derivative by the crank angle, its unit.
     of : str or int
@@ -98,7 +98,7 @@ class Table(NamedTuple):
     of: str | int = ""
 
     def filled(self, motion, leaves, wanted):
-        """The rows; 0 for those that are not wanted."""
+        """The rows; 0 for unwanted rows."""
         return [0.0] * len(self.rows) if wanted.isdisjoint(self.rows) else self.compute(motion, leaves)
 
 
@@ -112,14 +112,14 @@ class Recording:
     outputs : tuple of Node or float
         Results, components of a vector one after the other.
     widths : tuple of int
-        Rows of each quantity: 1 of a scalar, 2 of a vector, one for each group of the closure.
+        Rows of each quantity: 1 for a scalar, 2 for a vector, one per group for the closure.
     vectors : tuple of bool
     parameters : tuple of Node
         One for each number of a scene, in the order of its leaves.
     tables : tuple of Table
     graph : Graph
     inputs : mapping of Node to function
-        ``input(bounds) -> Error`` of inputs that are not exact, as `ErrorBounds` takes it.
+        ``input(bounds) -> Error`` of inputs that are not exact, as for `ErrorBounds`.
     """
 
     quantities: tuple[str, ...]
@@ -132,7 +132,7 @@ class Recording:
     inputs: dict[Node, Callable[[Any], Error]] = field(default_factory=dict)
 
     def named(self, rows):
-        """Results by name from rows (outputs, ...): (...) of a scalar, (rows, ...) of a vector and the closure."""
+        """Results by name from rows (outputs, ...): (...) for a scalar, (rows, ...) for a vector and the closure."""
         return dict(zip(self.quantities, map(rows.__getitem__, self._places), strict=True))
 
     @cached_property
@@ -165,7 +165,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
     quantities : sequence of str or None
         Names, see `quantities.components`; None: closure and all results of the groups.
     sizes : bool
-        Record the magnitude of a vector in place of its components.
+        Record the magnitude of a vector instead of its components.
     way : function, optional
         Other method for the positions, see `Dynamics`.
     """
@@ -194,7 +194,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 
 class Recorder:
-    """Puts nodes in place of the numbers of a structure, of a graph as the kernels have it unless one is given."""
+    """Replaces the numbers of a structure by nodes of a graph, by default a new plain `Graph`."""
 
     def __init__(self, structure, way=None, graph=None):
         self.graph = Graph() if graph is None else graph
@@ -233,7 +233,7 @@ class Recorder:
         def unproven(bounds):
             raise NotGivenError(
                 f"no bound can be given: {moved_by} does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
-                "so its own rounding is not known"
+                "so its rounding is unknown"
             )
 
         if moved_by:
@@ -275,14 +275,14 @@ class Recorder:
     def _stroke(self, load, place, idle):
         """Coordinates of the dead centres of a load's slider, at their crank angles from a table.
 
-        By these alone they change with no length to first order, so derivatives are exact. Beside a cam from a table
-        the coordinates are from one themselves.
+        To first order only these angles matter, because the coordinate has an extremum there; so derivatives are exact.
+        For a cam from a table the coordinates come from a table themselves.
         """
         mechanism, is_tabled = idle.mechanism, _has_tabled_cam(idle.mechanism)
         rows = self._tabled(
             (("s_f", 0, "m"), ("s_n", 0, "m")) if is_tabled else (("phi_f", 0, "rad"), ("phi_n", 0, "rad")),
             lambda motion, leaves: loads.dead_centres(motion, load.on)[is_tabled],
-            f"{load.title} beside a cam of samples" if is_tabled else "",
+            f"{load.title} with a cam from samples" if is_tabled else "",
             place,
         )
         return rows if is_tabled else [mechanism.place(row).travels[load.on].position for row in rows]
@@ -358,7 +358,7 @@ class Recorder:
                 beside = [np.broadcast_to(found, 2)[place] for found in compute(_nodes(*pair))]
                 if any(one is not two and one != two for one, two in zip(alone, beside, strict=True)):
                     return False
-        except Exception:  # whatever fails on recorded numbers
+        except Exception:  # any failure on recorded numbers
             return False
         return True
 
@@ -388,13 +388,13 @@ def _has_tabled_cam(mechanism):
 
 
 def _error_of_piece(bounds, kinks, travel, rate, own=None):
-    """Error of a value of a table: the exact place may lie in the next piece, or on the other stroke; `own` is more."""
+    """Error of a value of a table: the exact place may be in the next piece, or on the other stroke; `own` is added."""
     change, jump, near, distance = kinks
     bounds.look_at((travel, rate))
     jumps = plus(plus(jump / UNIT_ROUNDOFF, own), 0.0 / bounds.above(near, bounds.total(rate)))
     total = bounds.total(travel)
     if total is None:  # the place is exact
         return Error(0.0, jumps)
-    off = 2.0 * total  # also of the place by which the piece was chosen
+    off = 2.0 * total  # also of the place that selected the piece
     jumps = plus(jumps, 0.0 / bounds.above(near, off))
     return Error(0.0, bounds.fused(change, bounds.above(off - distance / UNIT_ROUNDOFF, None), jumps))

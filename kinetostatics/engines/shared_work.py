@@ -1,6 +1,6 @@
 """Values at crank angles that all designs of a sweep share, computed once.
 
-Where masses, springs or loads vary, the motion does not. A program is split in two: the shared part, whose results are
+If masses, springs or loads vary, the motion does not. A program is split in two: the shared part, whose results are
 rows of tables for the other part. Sums are fused with products as in the whole, so all results keep their bits.
 """
 
@@ -15,9 +15,9 @@ from .program import Program
 from .simplify import drop_unused, fused_sums, operands_of
 
 MIN_SHARED_VALUES = 10_000_000
-"""Values (designs * angles) from which two loops replace one."""
+"""Values (designs * angles) above which two loops replace one."""
 MIN_SHARE = 0.25
-"""Least share of operations that the designs have in common."""
+"""Least fraction of operations shared by the designs."""
 
 
 def shared_loop(program, numbers, angle, tables, count):
@@ -46,7 +46,7 @@ def shared_loop(program, numbers, angle, tables, count):
 
 
 def split_common(outputs, varied, first=0):
-    """Shared nodes, and outputs in a graph that reads them as rows of tables, the first of them row `first`.
+    """Shared nodes, and outputs in a graph that reads them as rows of tables, starting with row `first`.
 
     `varied` is the set of places of the parameters that vary.
     """

@@ -1,6 +1,6 @@
 """Loops of compiled reductions: bit masks of comparisons, functions of table columns, and sums of rows.
 
-Plain loops, written so that LLVM turns them into vector (SIMD) instructions.
+Plain loops, written so that LLVM uses vector (SIMD) instructions.
 """
 
 import inspect
@@ -16,7 +16,7 @@ from .codegen import compile_line, line_source
 from .graph import Graph
 
 COLUMNS = 8
-"""Columns of a table that are computed by one instruction."""
+"""Number of table columns in one instruction."""
 
 
 @cache

@@ -1,9 +1,8 @@
 """Algebraic simplification of recorded arithmetic, and fused multiply-add (FMA).
 
-No FMA for a b - c d when both products have the same structure, as those of twin groups: for equal inputs the result
-must be exactly 0, and FMA would return the rounding error of a b instead. Factors and terms fixed by the design do not
-count as structure. Each decision depends only on the nodes below a sum, so that a result has the same bits whatever
-else is computed.
+No FMA for a b - c d when both products have the same structure, as for twin groups: for equal inputs the result must be
+exactly 0, but FMA would return the rounding error of a b. Factors and terms fixed by the design do not count as
+structure. Each decision depends only on the nodes below a sum, so a result has the same bits whatever else is computed.
 """
 
 from itertools import product
@@ -18,11 +17,11 @@ MIN_DIVISOR = 2.0**-1022
 class SimplifiedGraph(Graph):
     """Graph with fewer operations at each crank angle and the same values except for rounding.
 
-    A quotient by a root becomes a product with its reciprocal, which other quotients share; a quotient by a number of
+    A quotient by a root becomes a product with its reciprocal, shared with other quotients. A quotient by a number of
     the design becomes a product with a reciprocal computed once. Divisors with infinite reciprocals keep the quotient,
-    so that 0 / x stays 0. The length of a vector along the crank, or across it, needs no root. Signs of factors move
-    to sums, to the last bit. An added zero stays: it decides the sign of a zero, which friction uses. Each decision
-    uses the recorded arguments only, so that a number is computed in one way whatever else is wanted.
+    so 0 / x stays 0. The length of a vector along the crank, or across it, needs no root. Signs of factors move to
+    sums, to the last bit. An added zero stays, because it decides the sign of a zero for friction. Each decision uses
+    only the recorded arguments, so a number is always computed in the same way.
     """
 
     def node(self, operation, *arguments):
@@ -64,7 +63,7 @@ class SimplifiedGraph(Graph):
         return super().node("/", above, below)
 
     def _over(self, part):
-        """1 / part, with reciprocals of the design's factors computed apart from those at each angle."""
+        """1 / part, with reciprocals of the design's factors computed separately from those at each angle."""
         if not isinstance(part, Node):
             return 1.0 / part
         arguments = part.arguments
@@ -106,7 +105,7 @@ def _is_none_of_turn(part, other):
 
 
 def _secant(square):
-    """(a, h) where a square is 1 + x^2 / h^2 and h = sqrt((a - x) (a + x)), so that its root is |a| / h; else None."""
+    """(a, h) if a square is 1 + x^2 / h^2 with h = sqrt((a - x) (a + x)), so its root is |a| / h; else None."""
     one, power = _parts(square, "+")
     if not is_number(one, 1.0):
         one, power = power, one
@@ -124,7 +123,7 @@ def _secant(square):
 
 
 def _turned(square):
-    """Factor a where a square is (a sin)^2 + (a cos)^2 of one angle; else None."""
+    """Factor a if a square is (a sin)^2 + (a cos)^2 of one angle; else None."""
     for one, other in _either_way(square, "+"):
         (x, same), (y, alike) = _parts(one, "*"), _parts(other, "*")
         if x is same and y is alike:
@@ -161,7 +160,7 @@ class FusedSum(NamedTuple):
 
 
 def fused_sums(nodes) -> dict[Node, FusedSum]:
-    """FMA of each sum that may be fused, by node; of two products the one that is computed later."""
+    """FMA of each sum that may be fused, by node; of two products the later one."""
     found: dict[Node, FusedSum] = {}
     ways: dict[Node, int] = {}
     held: dict[Node, frozenset[int]] = {}

@@ -1,4 +1,4 @@
-"""What the machine does: motion, forces, friction, assembly, principal points, quantities and units.
+"""Mechanics of a machine: motion, forces, friction, assembly, principal points, quantities and units.
 
 May import errors, numbers, machine.
 """

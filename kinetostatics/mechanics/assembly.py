@@ -27,7 +27,7 @@ def check(solution):
     Returns
     -------
     list of array (..., N)
-        Margins of the groups, without those that have no values yet; empty if numbers are not in double precision.
+        Margins of the groups, without margins of unknown value; empty if numbers are not in double precision.
     """
     placement, margins = solution.placement, []
     in_double_precision = getattr(solution.crank_angle, "dtype", None) != np.dtype(object)
@@ -35,7 +35,7 @@ def check(solution):
     for group, margin in zip(solution.mechanism.groups, found, strict=True):
         try:
             margin = np.asarray(margin, dtype=float)
-        except (TypeError, ValueError):  # it has no value yet, as under ``jax.jit``
+        except (TypeError, ValueError):  # its value is unknown, as under ``jax.jit``
             continue
         margins.append(margin)
         if not group.trusted and in_double_precision:
@@ -70,7 +70,7 @@ def unbounded_force_problem(solution, name, values):
     found = "infinite" if np.isinf(size) else f"{size:.3g} {quantities.unit_of(solution, name)}"
     return (
         f"{solution.mechanism.name}: {name} is {found} at crank angle {np.degrees(angle):.9g} deg, at a change point "
-        "that the mechanism passes: it has a second freedom there for an instant, and its joints hold no load; motion "
+        "that the mechanism passes. There it has a second freedom for an instant, and its joints carry no load; motion "
         f"and balancing torque are right ({int(np.sum(beyond))} of {sizes.size} crank angles)"
     )
 
@@ -139,7 +139,7 @@ class ClosureMargin:
 
 
 def limit_angles(mechanism, below):
-    """Crank angles, rad, at which the closure margin of a group has a minimum less than `below`."""
+    """Crank angles, rad, at which the closure margin of a group has a minimum below `below`."""
     found = [ClosureMargin(mechanism, group).minima(below) for group in mechanism.groups]
     return np.unique(np.mod(np.concatenate([np.empty(0), *found]), TURN * mechanism.turns))
 

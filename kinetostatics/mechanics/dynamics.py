@@ -16,8 +16,8 @@ away too h = 2 w c / (w + |c|):
     w - h = w (w - c + |c| - c) / (w + |c|),    c - h = c (|c| - w) / (w + |c|)
 
 These keep all digits of w - c, and no term exceeds three times inertia and spring force. The force of a stiffening
-spring, c = k + q e^2, counts each rounding of e three times. Where e, or its opposite, is a constant length l and a
-small part p, it is that of a spring of constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
+spring, c = k + q e^2, counts each rounding of e three times. If e, or its opposite, is a constant length l and a small
+part p, the force is that of a constant rate and a small rest: (k + q l^2) e + q p (2 l + p) e.
 """
 
 import warnings
@@ -62,12 +62,13 @@ def _reading(function):
 
 @dataclass(frozen=True, eq=False)
 class Dynamics(Motion):
-    """Motion and forces of a scene at its crank angles, computed when first asked for.
+    """Motion and forces of a scene at its crank angles, computed on first access.
 
     Attributes
     ----------
     way : function, optional
-        ``way(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, as harmonic series do.
+        ``way(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, for example by harmonic
+        series.
     """
 
     way: Callable[[Any, Any], Any] | None = None
@@ -90,9 +91,9 @@ class Dynamics(Motion):
                 scale = np.maximum(self.largest_torque_term, self.largest(torque))
                 if np.any(lost > MAX_POWER_ERROR * scale):
                     warnings.warn(
-                        f"{self.mechanism.name}: the balancing torque from the forces and that from the balance of "
-                        f"powers differ by up to {np.nanmax(lost):.3g} N m, beside {np.nanmax(scale):.3g} N m: a group "
-                        "of your own places its links or resolves its forces wrongly; ks.check(group) says where",
+                        f"{self.mechanism.name}: the balancing torque from the forces differs from that of the power "
+                        f"balance by up to {np.nanmax(lost):.3g} N m, for terms of {np.nanmax(scale):.3g} N m; a group "
+                        "of your own places its links or resolves its forces wrongly, see ks.check(group)",
                         stacklevel=1,
                     )
         if self.mechanism.has_unbounded_reactions:  # reactions in the crank's equilibrium grow without bound
@@ -104,7 +105,7 @@ class Dynamics(Motion):
     def acting(self):
         """Loads by link, and forces along guides by slider, that the groups resolve.
 
-        For a slider with springs whose departure is known the latter include its inertia along the guide.
+        For a slider with springs and known departure, the force along the guide includes its inertia.
         """
         loads, pushes = self.link_loads, self.pushes
         for slider in {item.on: None for item in self.loads if _is_spring(item)}:
@@ -117,7 +118,7 @@ class Dynamics(Motion):
         return loads, pushes
 
     def _total_push(self, slider):
-        """Force along the guide of a slider with its inertia, N; None if a departure or the mass is not known."""
+        """Force along the guide of a slider with its inertia, N; None if a departure or the mass is unknown."""
         mass, travel = self._slider_masses(slider)[0], self.placement.travels[slider]
         if mass is None:
             return None
@@ -145,7 +146,7 @@ class Dynamics(Motion):
         return reduce(plus, others, force)
 
     def _slider_masses(self, slider):
-        """Masses of a slider with its springs, kg: that in its equation of motion, and that whose weight it takes."""
+        """Masses of a slider with its springs, kg: mass in its equation of motion, and mass of its weight."""
         own, springs = self.mechanism.links[slider].body.mass, spring_masses(self.loads).get(slider)
         return (own, own) if springs is None else (plus(own, springs.moving), plus(own, springs.shaking))
 
@@ -154,7 +155,7 @@ class Dynamics(Motion):
         return self._of_group("departure", item)
 
     def outward(self, item):
-        """Size of that elongation as a constant length and a rest, m; None if the group does not know them."""
+        """Elongation, without sign, as a constant length and a rest, m; None if the group does not give them."""
         return self._of_group("outward", item)
 
     def _of_group(self, what, item):
@@ -177,7 +178,7 @@ class Dynamics(Motion):
 
     @property
     def sign_functions(self):
-        """Rates and forces at whose zeros friction jumps or has a kink, or another force one, a list of (..., N)."""
+        """List of rates and forces (..., N) at whose zeros friction jumps or a force has a kink."""
         forces = [self.scalar(name) for name in self.mechanism.sign_forces]
         return forces + [self._scalar(part) for part in (*self._friction_list("rates"), *self._friction_list("kinks"))]
 
@@ -198,16 +199,16 @@ class Dynamics(Motion):
 
     @property
     def friction_torque(self):
-        """Torque on the crank that friction takes, its loss over the crank speed, (..., N), N m."""
+        """Torque on the crank from friction: its loss over the crank speed, (..., N), N m."""
         return self._scalar(_work_of(self.friction_by_joint))
 
     @property
     def friction_margin(self):
-        """How far friction is from jamming: 1 without friction; where it is positive there is one state of forces.
+        """Margin from jamming, 1 without friction; if it is positive, exactly one state of forces exists.
 
-        Of a single guide or pin with friction it is ``1 - |kappa|``, exactly: where it is 0 or less there is no state,
-        or there are two. Of several joints of a group it is a bound, whatever their loads and senses of motion: where
-        it is 0 or less there may still be one state; none is looked for, and friction is NaN.
+        For a single guide or pin with friction it is exactly ``1 - |kappa|``; at 0 or less there is no state or there
+        are two. For several joints of a group it is a bound for all loads and senses of motion. At 0 or less one state
+        may still exist, but friction is NaN.
         """
         return self._scalar(reduce(smaller, self._friction_list("margins"), 1.0))
 
@@ -217,10 +218,10 @@ class Dynamics(Motion):
         return self._scalar(reduce(larger, self._friction_list("residuals"), 0.0))
 
     def reaction(self, joint, at=None):
-        """Reaction at a joint, (2, ..., N), N; `at`: of the main bearing "left" or "right" alone.
+        """Reaction at a joint, (2, ..., N), N; `at`: only of the main bearing "left" or "right".
 
-        Its sign follows from its pair: it acts on the `link` of a `machine.links.Turning` or `Sliding`;
-        `machine.group.Part.outputs` puts that into words, and the kernel `resolve` of the group keeps to it.
+        Its sign follows from its pair: it acts on the `link` of a `machine.links.Turning` or `Sliding`.
+        `machine.group.Part.outputs` describes it, and the kernel `resolve` of the group follows it.
         """
         if at is not None:
             return self.as_vector(shaft.bearing_reaction(self, joint, at))
@@ -235,7 +236,7 @@ class Dynamics(Motion):
         return self._scalar(found)
 
     def pressure(self, name):
-        """Hertz pressure of a contact by name, (..., N), Pa; NaN where there is no such contact."""
+        """Hertz pressure of a contact by name, (..., N), Pa; NaN without contact."""
         return self._scalar(energy_contact.pressure(self, name))
 
     @property
@@ -309,12 +310,12 @@ class Dynamics(Motion):
 
     @cached_property
     def largest_torque_term(self):
-        """Largest torque that one load alone would take, N m; the balancing torque is a sum of such terms."""
+        """Largest torque of a single load, N m; the balancing torque is the sum of the torques of all loads."""
         return reduce(np.maximum, (self.largest(part) for part in self.powers), 0.0)
 
     @cached_property
     def largest_force_term(self):
-        """Largest load on one link, weight, inertia or applied, N; a reaction is a sum of such terms."""
+        """Largest load on one link (weight, inertia or applied), N; a reaction is a sum of loads."""
         wrenches = [*self.mass_loads.values(), *(wrench for _, wrench in (*self.spring_loads, *self.wrenches))]
         forces = [part for wrench in wrenches if wrench.force is not None for part in wrench.force]
         return reduce(np.maximum, map(self.largest, [*forces, *self.pushes.values()]), 0.0)
@@ -410,7 +411,7 @@ class Dynamics(Motion):
 
 
 def _is_spring(item, rate="spring_rate"):
-    """Whether a load's rate gives its whole push; a subclass that overrides `push` alone makes the rate wrong."""
+    """Whether a load's rate gives its full push; a subclass that overrides `push` alone makes the rate wrong."""
     return come_from_one_class(type(item), rate, "push", "spring_rate")
 
 

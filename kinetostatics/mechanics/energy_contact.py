@@ -1,7 +1,7 @@
 """Energies of a scene, the reduced inertia at the crank, and the Hertz pressure of line contacts.
 
-With s the mass centre of a link and theta its angle, derivatives by the crank angle phi, the kinetic energy of all
-links is J omega^2 / 2 with the reduced (equivalent) inertia
+Let s be the mass centre of a link and theta its angle, primes derivatives by the crank angle phi. The kinetic energy of
+all links is J omega^2 / 2 with the reduced (equivalent) inertia
 
     J = sum m |s'|^2 + I theta'^2        dJ/dphi = 2 sum m s' . s'' + I theta' theta''
 
@@ -59,7 +59,7 @@ def kinetic_energy(motion):
 
 
 def potential_energy(motion):
-    """Potential energy of weight and springs, (..., N), J; that of weight is 0 at the height of O.
+    """Potential energy of weight and springs, (..., N), J; the energy of weight is 0 at the height of O.
 
     Loads without a potential, such as process forces and dampers, contribute nothing.
     """
@@ -154,8 +154,8 @@ def refusals(solution):
         angle = np.degrees(np.broadcast_to(dynamics.crank_angle, cut.shape))
         text = (
             f"the roller, radius {radius:.6g} m, undercuts the side of its cam that carries it at {cut.sum()} crank "
-            f"angles from {angle[cut].min():.6g} to {angle[cut].max():.6g} deg: at {angle[worst]:.6g} deg the pitch "
-            f"curve bends with a radius of {bend:.6g} m; the roller's must be less, or the cam larger"
+            f"angles from {angle[cut].min():.6g} to {angle[cut].max():.6g} deg. At {angle[worst]:.6g} deg the pitch "
+            f"curve bends with a radius of {bend:.6g} m; give a smaller roller or a larger cam"
         )
         found.append(checks.Problem(text, cut))
     return found

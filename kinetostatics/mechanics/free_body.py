@@ -1,4 +1,4 @@
-"""Free body of a link: every force and couple on it with its point; with inertia they are in equilibrium.
+"""Free body of a link: every force and couple on it with its point; including inertia they are in equilibrium.
 
     sum F = 0        sum (r x F + C) = 0
 
@@ -38,7 +38,7 @@ class Action(NamedTuple):
     point, force : array (2, ..., N)
         m, N.
     couple : array (..., N)
-        Counter-clockwise, N m.
+        N m, counter-clockwise.
     """
 
     name: str
@@ -79,7 +79,7 @@ def free_body(dynamics, link) -> tuple[Action, ...]:
 
 
 def _require_balance(dynamics, link, actions):
-    """Refuse forces that are not in equilibrium, as of a group of the user's own that does not declare all pairs."""
+    """Refuse forces that are not in equilibrium, as from a user's group with undeclared pairs."""
     sums = [np.sum([item.force for item in actions], axis=0), np.sum([item.moment() for item in actions], axis=0)]
     sizes = [np.abs([item.force for item in actions]), np.abs([item.moment() for item in actions])]
     lost = [np.max(np.abs(part)) > MAX_IMBALANCE * np.max(size) for part, size in zip(sums, sizes, strict=True)]
@@ -117,7 +117,7 @@ def _masses(dynamics, link):
 
 
 def _loads(dynamics, link):
-    """Yield force and couple of each load on a link, at the point that the load names."""
+    """Yield force and couple of each load on a link, at the point of the load."""
     loads = [item for item in dynamics.loads if not isinstance(item, Gravity)]
     origin = dynamics.placement.links[link].joint.position
     for title, item in zip(numbered_titles(loads), loads, strict=True):

@@ -1,13 +1,13 @@
 """Friction in the joints of a group: reactions and friction together, by Newton's method.
 
 Friction is a constant times the magnitude of a reaction. All reactions of a group are linear in the moments and forces
-that friction puts on its links. A magnitude is the reaction times its own direction, so with known directions the
+of friction on its links. A magnitude is the reaction times its own direction, so with known directions the
 equations are linear. Each pass solves them with the directions of the pass before, which is Newton's method and doubles
 the digits; the first pass takes friction from the reactions without friction. For a guide alone the direction is a
 sign, and the second pass is exact: N = N0 / (1 + kappa sgn N0).
 
-To first order a magnitude does not change with its direction, so derivatives keep the directions and need the last pass
-only. The number of passes is fixed (`jamming.solve_friction` chooses it), so friction is plain arithmetic.
+To first order a magnitude does not change with its direction, so derivatives use fixed directions and need only the
+last pass. The number of passes is fixed (`jamming.solve_friction` chooses it), so friction is plain arithmetic.
 """
 
 from dataclasses import dataclass, field
@@ -57,7 +57,7 @@ class FrictionLaw(NamedTuple):
     Attributes
     ----------
     name : str
-        Of the pair.
+        Name of the pair.
     factor : number
         Coefficient, or moment arm, with the sign of the motion.
     reaction : function
@@ -108,10 +108,10 @@ def pair_rate(part, name, pair, placement):
 
 
 def rolling_resistance(friction):
-    """Force t along the curve that turns a roller, and couple of its pin, m (None without), for a force of 1 across.
+    """Force t along the curve that turns a roller, and couple of its pin, m (None if zero), for a force of 1 across.
 
-    With the roller's radius r, p = mu times the pin's radius and the arm e of rolling friction
-    t r = e + p sqrt(1 + t^2), where the last term is the couple.
+    With the roller's radius r, p = mu times the pin's radius and e the arm of rolling friction: t r = e + p sqrt(1 +
+    t^2). The last term is the couple.
     """
     mu, arm, radius = present(friction.mu), present(friction.rolling_arm), friction.roller_radius
     if mu is None:
@@ -179,7 +179,7 @@ class FrictionSolver:
     ----------
     found : dict of str to PairFriction
     margins, residuals : list
-        Of each group: margin from jamming and relative change by one more pass (`FrictionEquations`).
+        By group: margin from jamming and relative change by one more pass (`FrictionEquations`).
     rates, kinks : list
         Rates at whose zeros friction jumps, and forces at whose zeros it has a kink.
     """
@@ -422,7 +422,7 @@ class FrictionEquations:
     def _by_directions(self, reactions):
         """Friction by channel, from the linear equations with the directions of these reactions.
 
-        They are solved by elimination without pivoting, as the pivots are near 1.
+        They are solved by elimination without pivoting, because the pivots are near 1.
         """
         directed = [direction_of(law, parts) for law, parts in zip(self._laws, reactions, strict=True)]
         right = self._totals(map(_weighted, directed, self._free))

@@ -1,4 +1,4 @@
-"""Forces of the machine on its frame, at every place where the two push each other.
+"""Forces of the machine on its frame, at every place of contact.
 
     pairs            opposite of their force on a link, with its couple: `pair_forces`
     loads            feet of springs and dampers, fixed points, couples, process forces that the frame takes
@@ -29,7 +29,7 @@ def support(state, name) -> Support:
     Raises
     ------
     QuantityError
-        There is no such place; the message lists those there are.
+        The place is unknown; the message lists the known ones.
     """
     known = places(state)
     if not isinstance(name, str) or name not in known:
@@ -43,9 +43,9 @@ def support(state, name) -> Support:
 
 
 def undeclared(dynamics):
-    """Largest force, N, and moment about O, N m, on the links that neither pairs with the frame nor the motor take.
+    """Largest force, N, and moment about O, N m, on the links, without those of pairs with the frame and of the motor.
 
-    Rounding, unless a group of the user's own pushes the frame by more than the pairs that it declares.
+    It is rounding, unless a user's group loads the frame by more than its declared pairs.
     """
     links, guides = dynamics.placement.links, dynamics.mechanism.guides
     acting = [(links[name].joint.position, *wrench) for name, wrench in dynamics.link_loads.items()]

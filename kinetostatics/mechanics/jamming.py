@@ -1,6 +1,6 @@
 """Passes over the friction of a scene, and the errors and warnings where it jams or does not converge.
 
-Friction jams where its margin is not positive: there are no forces in equilibrium, or several states of them.
+Friction jams where its margin is not positive: there are no forces in equilibrium, or several states of forces.
 """
 
 import warnings
@@ -17,7 +17,7 @@ MAX_CHANGE = 1e-13
 
 
 def solve_friction(item, evaluate=None):
-    """The item with enough passes over its friction to converge, or with the most there are.
+    """The item with enough passes over its friction to converge, or with the largest number of passes.
 
     No other function chooses passes. Each pass of `friction.FrictionEquations` doubles the digits. Most scenes need the
     fewest passes; several joints near jamming need more.
@@ -25,7 +25,7 @@ def solve_friction(item, evaluate=None):
     Parameters
     ----------
     item : Scene or Solution
-        With friction.
+        Scene or solution with friction.
     evaluate : function, optional
         ``evaluate(item) -> (margin, residual)``, each (..., N). Without it convergence is not tested, and the item gets
         more passes than most scenes need.
@@ -103,7 +103,7 @@ def warn_if_not_converged(item, margin, residual, stacklevel):
     if lost.any():
         angle = np.broadcast_to(item.crank_angle, margin.shape)[lost]
         warnings.warn(
-            f"{item.mechanism.name}: friction and reactions are not found to rounding at {lost.sum()} of "
+            f"{item.mechanism.name}: friction and reactions are not converged to rounding at {lost.sum()} of "
             f"{lost.size} crank angles, {_degrees(angle)} deg; one more pass would change them by up to "
             f"{np.max(residual[lost]):.1g} of the largest",
             ConditionWarning,
@@ -116,9 +116,9 @@ def _error(solution, margin, jams, owner="", other=', or pass on_gap="nan" to ge
     angle = np.broadcast_to(solution.crank_angle, margin.shape)[jams]
     return JammingError(
         f"{owner}{solution.mechanism.name}: friction jams at {angle.size} of {margin.size} crank angles, "
-        f"{_degrees(angle)} deg: "
-        f"it feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times (at 1 or more there are no "
-        "forces in equilibrium, or several states of them; of several joints together: there may be); lower the "
+        f"{_degrees(angle)} deg. "
+        f"It feeds back on itself {1.0 - float(np.min(margin[jams])):.4g} times. At 1 or more there are no forces in "
+        "equilibrium or several states of forces (for several joints together: may be); lower the "
         f"coefficients, lengthen the shoes or steepen the links{other}",
         np.unique(angle).tolist(),
     )

@@ -1,8 +1,8 @@
-"""Values of loads at the crank angles of a motion, and checks of functions of the user's.
+"""Values of loads at the crank angles of a motion, and checks of the user's functions.
 
-A function of a load must be pure, the same at the same crank angles: engines call it as often as they need, for all
-crank angles, while a program is recorded, or between the angles. It sees a motion without forces, because forces follow
-from its values.
+A function of a load must be pure, with equal values at equal crank angles. Engines call it any number of times: for all
+crank angles, while a program is recorded, or between the angles. Its motion has no forces, because forces follow from
+its values.
 """
 
 from contextlib import suppress
@@ -22,11 +22,11 @@ from ..numbers.parameter_tree import replace_unchecked
 from .motion import Motion
 
 VALUE_NAMES = {"N m": "torque", "Pa": "resistance"}
-"""What a function of a load returns, by its unit, if it is no force."""
+"""Kind of the result of a load's function by its unit, if it is not a force."""
 SPEED_AT_REST = 1e-150
-"""Crank speed, rad/s, that functions see at rest, times the sense of rotation or the crank acceleration.
+"""Crank speed, rad/s, for functions at rest, times the sense of rotation or the crank acceleration.
 
-It gives velocities the sense of the motion about to begin, and is negligible beside any other speed."""
+It gives velocities the sense of the motion about to begin, and is negligible relative to any other speed."""
 MOTION_MEMBERS = (
     "crank_angle",
     "crank_speed",
@@ -48,15 +48,15 @@ class ForceFreeMotion(Motion):
     @property
     def crank_sense(self):
         """Sense of rotation; raises an error where the crank rests without acceleration."""
-        require_sense("a function of the motion asks for crank_sense", self)
+        require_sense("a function of the motion uses crank_sense", self)
         return super().crank_sense
 
     def __getattr__(self, name):
         if name.startswith("_"):
             raise AttributeError(name)
         raise UnknownForceError(
-            f"a function of the motion asks for {name!r}, which it has not: forces come of what the function gives; it "
-            f"may ask for {', '.join(MOTION_MEMBERS)}"
+            f"a function of the motion uses {name!r}, which is missing, as forces follow from the function; it "
+            f"may use {', '.join(MOTION_MEMBERS)}"
         )
 
 
@@ -65,7 +65,7 @@ class UnknownForceError(ParameterError, AttributeError):
 
 
 class WatchedMotion(ForceFreeMotion):
-    """Motion that notes in `asked` which of crank speed, acceleration and sense are read, directly or by velocities."""
+    """Motion that records in `asked` the use of crank speed, acceleration and sense, directly or by velocities."""
 
     def __getattribute__(self, name):
         if name in ("crank_speed", "crank_acceleration", "sense"):
@@ -74,9 +74,9 @@ class WatchedMotion(ForceFreeMotion):
 
 
 def drive_dependence(item, motion):
-    """Set of those among crank_speed, crank_acceleration and sense that a load's function reads.
+    """Subset of crank_speed, crank_acceleration and sense that a load's function reads.
 
-    Code cannot depend on values that it does not read; that it depends on those it reads is assumed.
+    Code cannot depend on values that it does not read; it is assumed to depend on all values that it reads.
     """
     watched = without_forces(motion, WatchedMotion)
     vars(watched)["asked"] = set()
@@ -85,7 +85,7 @@ def drive_dependence(item, motion):
 
 
 def without_forces(motion, kind=ForceFreeMotion):
-    """The motion without forces, as functions of loads see it."""
+    """The motion without forces, for functions of loads."""
     begins = present(motion.crank_acceleration if motion.sense is None else motion.sense)
     speed = motion.crank_speed if begins is None else motion.crank_speed + SPEED_AT_REST * begins
     made = kind(motion.mechanism, motion.crank_angle, speed, motion.crank_acceleration, sense=motion.sense)
@@ -94,7 +94,7 @@ def without_forces(motion, kind=ForceFreeMotion):
 
 
 def evaluate_load(item, motion):
-    """The load with values at the crank angles of a motion in place of its table or function."""
+    """The load with values at the crank angles of a motion instead of its table or function."""
     return item if has_no_user_code(item) else replace_unchecked(item, **{item.VALUE: user_value(item, motion)})
 
 
@@ -124,7 +124,7 @@ def title_of(item):
 
 
 def numbered_titles(loads):
-    """Title of each load; those of one title are numbered from the second on: "Torque on 'crank' #2"."""
+    """Title of each load; equal titles are numbered from the second: "Torque on 'crank' #2"."""
     titles = [title_of(item) for item in loads]
     numbers = [titles[: place + 1].count(title) for place, title in enumerate(titles)]
     return [f"{title} #{number}" if number > 1 else title for title, number in zip(titles, numbers, strict=True)]
@@ -174,15 +174,15 @@ _pure_functions: Any = WeakSet()
 def require_pure(motion):
     """Raise `ParameterError` if a user's function returns two different forces at the same crank angles.
 
-    Each function is called twice at a few angles, at its first use. If it fails there, the error is left to the caller
-    that needs its values.
+    Each function is called twice at a few angles, at its first use. If it fails there, the error is raised by the
+    caller that needs its values.
     """
     for item in motion.loads:
         if has_no_user_code(item):
             continue
         function: Any = item.value_now if isinstance(item, Load) else item.push
         tested = getattr(function, "__func__", function)
-        with suppress(TypeError):  # from an object that takes no weak references, or has no hash
+        with suppress(TypeError):  # from an object without weak references or hash
             if tested in _pure_functions:
                 continue
         if type(function) is not Table:
@@ -211,6 +211,6 @@ def _require_same_twice(item, function, motion):
         unit = getattr(item, "UNIT", "N")
         raise ParameterError(
             f"{title_of(item)}: its function gives {here:.9g} {unit} and then {there:.9g} {unit} at the same crank "
-            "angle; it must be pure, a function of the motion alone, since engines call it as often as they need: keep "
-            "no counter, random number or clock in it"
+            "angle. It must be pure, a function of the motion alone, because engines call it any number of times; "
+            "use no counter, random number or clock in it"
         )

@@ -1,9 +1,9 @@
 """Motion of a mechanism at given crank angles: positions, velocities, accelerations of every joint and link.
 
 Velocity and acceleration follow from the kinematic coefficients x' and x'' by the crank angle: v = omega x',
-a = omega^2 x'' + alpha x'. Where parts of the mechanism cannot be assembled, quantities are NaN: motion where the group
-or an inner one is open; forces also where an outer one is; quantities of the crank or of the whole mechanism where any
-is.
+a = omega^2 x'' + alpha x'. If parts of the mechanism cannot be assembled, quantities are NaN. Motion is NaN where the
+group or an inner one is open, forces also where an outer one is open. Quantities of the crank or of the whole mechanism
+are NaN where any group is open.
 """
 
 import math
@@ -74,7 +74,7 @@ def gap_mask(placement, groups):
 
 
 class SceneParts(NamedTuple):
-    """Parts of a scene, in the order of its structure; absent parts at the end are left out there."""
+    """Parts of a scene, in the order of its structure; absent parts at the end are left out."""
 
     mechanism: Any
     crank_speed: Any
@@ -90,7 +90,7 @@ def _has_no_user_code(kind):
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Motion of a mechanism; made by `solve`.
+    """Motion of a mechanism; `solve` returns it.
 
     The last axis of arrays is the crank angle, batch axes of designs come before it, and the first axis of a vector is
     (x, y).
@@ -182,8 +182,8 @@ class Motion:
     def position(self, point):
         """Position of a point, (2, ..., N), m.
 
-        A joint ("O", "A", "B" ...), a link's mass centre (its name), a place on a link, ("coupler", along, across) in m
-        from its reference joint, or a fixed point (x, y).
+        The point is a joint ("O", "A", "B" ...), the mass centre of a link (its name), or a fixed point (x, y). A place
+        on a link is ("coupler", along, across), in m from its reference joint.
         """
         return self.as_vector(self._point(point).position)
 
@@ -253,14 +253,14 @@ class Motion:
     slider_acceleration = property(travel_acceleration)
 
     def measure(self, name):
-        """A motion quantity that a group declares, such as "pressure_angle", (..., N)."""
+        """A declared motion quantity of a group, such as "pressure_angle", (..., N)."""
         for group in self.mechanism.groups:
             if isinstance(name, str) and name in group.motions:
                 return self._scalar(group.motion(name, self.placement))
         known = of_mechanism(self.mechanism)
         if isinstance(name, str) and name in known:
             reading = f"solution{known[name].reading}"
-            raise QuantityError(f"{self.mechanism.name}: {name!r} is no quantity of motion; read it by {reading}")
+            raise QuantityError(f"{self.mechanism.name}: {name!r} is not a quantity of motion; read it by {reading}")
         raise QuantityError(checks.choice(f"{self.mechanism.name}: quantity", name, tuple(known)))
 
     @property
@@ -272,7 +272,7 @@ class Motion:
     def crank_sense(self):
         """Sense of rotation of the crank: +1 counter-clockwise, -1 clockwise, float or array.
 
-        `sense` if given, else the sign of the crank speed, at rest of the crank acceleration; +1 where both are 0.
+        `sense` if given, otherwise the sign of the crank speed, at rest of the crank acceleration; +1 where both are 0.
         """
         return sense_of(self.crank_speed, self.crank_acceleration) if self.sense is None else self.sense
 
@@ -285,12 +285,12 @@ class Motion:
         return self._look_up("slider", self._slider(slider), self.placement.travels)
 
     def _slider(self, name):
-        """Name of a slider; None stands for the only one, or the one without a label."""
+        """Name of a slider; None: the only one, or the one without a label."""
         found = self.mechanism.slider if name is None else name
         if found is None:
             names = tuple(self.mechanism.guides)
             has = f"{len(names)} sliders, {', '.join(names)}" if names else "no slider"
-            remedy = f'; say which, as by travel("{names[0]}") or "{names[0]}_position"' if names else ""
+            remedy = f'; choose one, as in travel("{names[0]}") or "{names[0]}_position"' if names else ""
             raise QuantityError(f"{self.mechanism.name} has {has}{remedy}")
         return found
 
@@ -318,7 +318,7 @@ class Motion:
 
     def _look_up(self, kind, name, table):
         if not isinstance(name, str) or name not in table:
-            several = "; ask for one at a time" if isinstance(name, list | tuple | set | np.ndarray) else ""
+            several = "; use one at a time" if isinstance(name, list | tuple | set | np.ndarray) else ""
             raise QuantityError(f"{checks.choice(f'{self.mechanism.name}: {kind}', name, table)}{several}")
         return table[name]
 

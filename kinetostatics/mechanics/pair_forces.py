@@ -5,10 +5,10 @@
     teeth            reaction at the pitch point
     cam              force along the left normal of its curve, friction along the curve, at the contact
 
-They act on the `link` of the pair, and the other way round on the link against it: a force on the frame is the opposite
-of that of its pair. The pin friction of a roller turns it against a force along the curve, so both forces of a cam pass
-through the contact, or ahead of it by the arm of rolling friction. A roller touches its curve on the side that the sign
-of the force says, at its radius from the centre; where the radius is not known the centre stands for the contact.
+They act on the `link` of the pair, and oppositely on the other link: a force on the frame is the opposite of the force
+of its pair. The pin friction of a roller turns it against a force along the curve. So both forces of a cam pass through
+the contact, or ahead of it by the arm of rolling friction. The sign of the force gives the side of the curve that the
+roller touches, at its radius from the centre. If the radius is unknown, the contact is at the centre.
 """
 
 from ..machine.group import FRAME
@@ -30,7 +30,7 @@ from ..numbers.planar import (
 def pair_forces(state, name, joining) -> dict[str, Support]:
     """Forces of a pair on its link, from a `Dynamics` or solution and a pair of `machine.supports.pairs_of`.
 
-    By name: one, or two of a slide whose couple and friction count at different joints.
+    By name: one, or two for a slide whose couple and friction refer to different joints.
     """
     pair = joining.pair
     if isinstance(pair, CamDriven):
@@ -44,12 +44,12 @@ def pair_forces(state, name, joining) -> dict[str, Support]:
 
 
 def _friction(state, name):
-    """Friction of a pair on its link; None without."""
+    """Friction of a pair on its link; None if zero."""
     return state.friction_at(name) if name in state.friction.acting else None
 
 
 def _of_slide(state, name, joining):
-    """Forces of a straight pair; its couple is about the joint that the pair names. Of a guide the reaction is all."""
+    """Forces of a straight pair; its couple is about the pair's reference joint. A guide has only the reaction."""
     pair, joints = joining.pair, state.placement.joints
     couple, about = state.scalar(pair.couple), joints[pair.about or pair.joint].position
     if name in joining.part.outputs:

@@ -7,7 +7,7 @@ the links. Collected link by link and divided by the whole mass m, they are the 
     h1 = (m1 L_OS1 + (m2 + m3) L_OA) / m,   h2 = (m2 L_AS2 + m3 L_AB) / m,   h3 = m3 L_BS3 / m
 
 Their sum is the common mass centre, and F = -m a_S the shaking force. A joint that no link keeps at a constant distance
-contributes by itself: a fixed pivot a constant vector, a cam-guided pin A its own motion times the mass it carries.
+contributes separately. A fixed pivot adds a constant vector, a cam-guided pin A its motion times the mass it carries.
 """
 
 from dataclasses import dataclass
@@ -19,13 +19,14 @@ from ..machine.group import FRAME
 from ..machine.links import acceleration_of, arm, first_at, present, second_at
 from ..machine.loads import Load, spring_masses
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.planar import add_vectors, plus, product, scale_vector
 
 
+@with_units(mass="kg", static_moments="kg m", carried="kg")
 @dataclass(frozen=True, eq=False)
 class PrincipalPoints:
-    """Principal points of a mechanism; made by `principal_points`.
+    """Principal points of a mechanism; `principal_points` returns them.
 
     Attributes
     ----------
@@ -50,8 +51,6 @@ class PrincipalPoints:
     static_moments: dict
     carried: dict
 
-    __repr__ = repr_with_units(mass="kg", static_moments="kg m", carried="kg")
-
     @property
     def moduli(self):
         """Modulus h by link, m, positive along the link; 0 for a link without effect."""
@@ -63,7 +62,7 @@ class PrincipalPoints:
         return {link: across / self._present_mass() for link, (_, across) in self.static_moments.items()}
 
     def vectors(self, motion):
-        """Principal-point vectors by link, and by joint that contributes by itself, (2, ..., N), m."""
+        """Principal-point vectors by link, and by joint that contributes separately, (2, ..., N), m."""
         mass = self._present_mass()
         links = {
             name: motion.as_vector(scale_vector(1.0 / mass, arm_in))
@@ -123,7 +122,7 @@ class PrincipalPoints:
 
     def _present_mass(self):
         if isinstance(self.mass, int | float) and self.mass == 0:
-            raise ParameterError("the mechanism has no mass, so no mass centre; give at least one link a mass")
+            raise ParameterError("the mechanism has no mass and so no mass centre; give at least one link a mass")
         return self.mass
 
 
@@ -134,7 +133,7 @@ def principal_points(mechanism, loads=()):
     ----------
     mechanism : Mechanism
     loads : sequence of loads, or one
-        Of the springs among them half of the mass moves with their slider: it has their momentum.
+        Half of the mass of springs moves with their slider and has their momentum.
 
     Returns
     -------
@@ -145,7 +144,7 @@ def principal_points(mechanism, loads=()):
     Raises
     ------
     ParameterError
-        The first argument is not a mechanism, the loads are no loads, or a spring is on no slider of it.
+        The first argument is not a mechanism, the loads are no loads, or a spring is on an unknown slider.
 
     Examples
     --------

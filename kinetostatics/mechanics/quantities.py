@@ -1,6 +1,6 @@
 """Quantities of a solution by name: unit, label, and the function that reads their values.
 
-The groups declare units and labels. One table serves extremes, tables, plots, sweeps and the command line.
+The groups declare units and labels. The table serves extremes, tables, plots, sweeps and the command line.
 """
 
 import json
@@ -30,12 +30,12 @@ class Quantity(NamedTuple):
     label : str
         Name in tables and on axes.
     read : function
-        Takes a motion, dynamics or solution and returns values, (..., N), of a vector (2, ..., N).
+        From a motion, dynamics or solution to values, (..., N) or for a vector (2, ..., N).
     vector : bool
     kind : str
-        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "contact" (a pressure), "whole" (of
-        the whole mechanism), "energy" (of the whole mechanism, in tables on request only), "rate", "friction",
-        "ground" (a force on the frame, not in tables), or "check" (of the solution).
+        "reaction", "force" (a force, moment or torque by name), "slider", "motion", "contact" (a pressure), "rate" or
+        "friction". Of the whole mechanism: "whole", or "energy" (in tables on request only). Not in tables: "ground"
+        (a force on the frame) and "check" (of the solution).
     owner : str
         Link of a rate.
     """
@@ -116,7 +116,7 @@ def of_scene(scene) -> dict[str, Quantity]:
 
 
 def _of_friction(mechanism, friction):
-    """Quantities of the joints with friction; none without any."""
+    """Quantities of the joints with friction; empty without friction."""
     found = {}
     for joint in friction:
         pin = isinstance(mechanism.pairs[joint], Turning)
@@ -155,7 +155,7 @@ def quantity(solution, name) -> Quantity:
     Raises
     ------
     QuantityError
-        The mechanism has no such quantity; the message lists its quantities.
+        The quantity is unknown; the message lists those of the mechanism.
     """
     known = of_scene(solution)
     if not isinstance(name, str) or name not in known:
@@ -169,12 +169,12 @@ def without_bars(solution, name):
     Raises
     ------
     QuantityError
-        The mechanism has no such quantity, or it is not a vector.
+        The quantity is unknown or not a vector.
     """
     bars = isinstance(name, str) and len(name) > 2 and name[0] == name[-1] == "|"
     bare = name[1:-1] if bars else name
     if not quantity(solution, bare).vector and bars:
-        raise QuantityError(f"{name}: only of a vector there is a magnitude, and {bare} is a number")
+        raise QuantityError(f"{name}: only vectors have a magnitude, and {bare} is a number")
     return bare
 
 
@@ -212,7 +212,7 @@ def components(solution, name):
 
 
 def unit_of(solution, name):
-    """Unit of a quantity of a solution; "" for a function of the user's."""
+    """Unit of a quantity of a solution; "" for a user's function."""
     return "" if callable(name) else quantity(solution, name).unit
 
 
@@ -238,9 +238,9 @@ def component_sizes(solution, name):
 
 
 def largest_term(solution, name):
-    """Largest term in the sum of a force, N, or moment, N m; 0 for a motion or a function of the user's.
+    """Largest term in the sum of a force, N, or moment, N m; 0 for a motion or a user's function.
 
-    Values much smaller than it may be rounding of terms that cancel.
+    Much smaller values may be rounding of cancelling terms.
     """
     unit = unit_of(solution, name)
     if unit == "N m":

@@ -10,7 +10,7 @@ determinate on bearings at z1 < z2. With the forces P_i of groups on the crank, 
 
     R_right = -sum of P_i (z_i - z1) / (z2 - z1),    R_left = R_O - R_right
 
-The torque in the shaft beside a throw is minus the sum of the moments about O of all loads from there to the free end.
+The torque in the shaft beside a throw is minus the sum of the moments about O of all loads between it and the free end.
 Friction in main bearings, belts and gears are left out. Source of the couples: J. P. den Hartog, *Mechanical
 Vibrations*, 1956, chapter 5.
 """
@@ -43,7 +43,7 @@ def rocking_moment(state):
 
 
 def _couple_of_crank(state):
-    """Sum of z times inertia force over the crank, beyond that of its mass centre, N m; None without couple."""
+    """Sum of z times inertia force over the crank, without that of its mass centre, N m; None without couple."""
     couple = state.mechanism.crank.link.couple_unbalance
     lever = couple and arm(state.placement.links[CRANK].direction, *map(present, couple))
     if lever is None:

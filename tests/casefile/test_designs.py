@@ -88,7 +88,7 @@ def test_duties_of_a_file_are_those_of_python(tmp_path):
         (("cutting: largest O", "cutting: larges O"), r"shared.limits\[1\]: output 'larges O'"),
         (('"spring.stiffness"', '"process_force.force"'), "shared.vary: parameter is 'process_force.force'"),
         (("angles = 72", 'angles = 72\nvariant = "plain"'), "design.shared has variant and duties: give one"),
-        (("cam-circle = 0.25", "shared = 0.25"), "design.shared.duties is what it is to find: give another"),
+        (("cam-circle = 0.25", "shared = 0.25"), "design.shared.duties is the name of the result: give another"),
     ],
 )
 def test_faults_of_duties_are_told_with_their_key(tmp_path_factory, change, message):

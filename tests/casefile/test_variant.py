@@ -114,7 +114,7 @@ def guide(**values):
 def test_a_centre_at_mid_length_needs_a_length():
     table = SimpleNamespace(mass=2.0, centre="mid-length", inertia=0.1)
     assert build_link(table, 0.6).centre == (0.3, 0.0)
-    with pytest.raises(ks.KinetostaticsError, match="is for links between two joints"):
+    with pytest.raises(ks.KinetostaticsError, match="needs a link between two joints"):
         build_link(table)
 
 

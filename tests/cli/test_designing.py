@@ -53,7 +53,7 @@ def test_duties_are_printed_drawn_and_written_one_by_one(tmp_path, capsys):
 def test_only_named_designs_are_searched(saw, capsys):
     printed = printed_by(["design", str(saw), "--design", "stiffer", "--starts", "2"], capsys)
     assert "trade" not in printed
-    assert "2 of 2 searches came to this end" in printed
+    assert "2 of 2 searches gave this result" in printed
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_only_named_designs_are_searched(saw, capsys):
     [
         (["--design", "stifer"], "design is 'stifer', allowed: 'stiffer', 'trade'; did you mean 'stiffer'?"),
         (["--out", "found.csv"], "--out: "),
-        (["--out", "."], "--out: . is there already; give another name"),
+        (["--out", "."], "--out: . exists already; give another name"),
         (["--out", "/dev/null/found.toml"], "--out: "),
         (["--plot", "/dev/null"], "--plot: "),
     ],
@@ -76,7 +76,7 @@ def test_what_cannot_be_is_said_before_the_search(saw, capsys, more, message):
 
 def test_a_case_without_designs_has_nothing_to_find(capsys):
     assert main(["design", "mower_drive"]) == 2
-    assert "has nothing to find; say what as [design.NAME]" in capsys.readouterr().err
+    assert "has no [design.NAME]" in capsys.readouterr().err
 
 
 def test_the_case_itself_is_not_overwritten(saw, capsys):

@@ -38,7 +38,7 @@ def test_what_is_wrong_ends_in_one_line(tmp_path, capsys):
     assert main(["report", "yoke_pump", "--out", str(tmp_path)]) == 2
     assert main(["report", "yoke_pump", "--variant", "idel", "--out", str(tmp_path / "x.html")]) == 2
     told = capsys.readouterr().err
-    assert "no such file, and no shipped case of that name" in told
+    assert "there is no file and no shipped case of this name" in told
     assert f"{tmp_path} is a folder; give the name of a file in it" in told
     assert "idle" in told
     assert list(tmp_path.iterdir()) == []

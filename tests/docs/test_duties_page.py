@@ -36,7 +36,7 @@ def test_numbers_of_the_page_are_those_of_its_machines():
     words = re.sub(r"(?<=\d) (?=\d{3}\b)", "", " ".join(text.split()))
     for told in (
         f"takes {plain:.0f} J from the mains",
-        f"and {free:.0f} J in the saw with the torque-free cam",
+        f"torque-free cam for idling takes {free:.0f} J",
         f"saves {plain - free:.0f} J when it cuts, and {saved:.0f} J when it idles",
         f"work of the cut, {names['force'] * 0.6:.0f} J",
         f"of the study saves {plain - circle:.0f} J",
@@ -45,7 +45,7 @@ def test_numbers_of_the_page_are_those_of_its_machines():
         f"{100 * (1 - mains['both duties, idle'] / mains['torque-free idling, idle']):.1f} % less",
         f"idles at {names['runs']['both duties, idle'].mean_speed * 30 / np.pi:.1f} rpm",
         f"{start['both duties'] / 1e3:.0f} kN m to start in place of {start['torque-free idling'] / 1e3:.1f} kN m",
-        f"brings {100 * (plain - free) / (plain - best):.1f} % of what",
+        f"brings {100 * (plain - free) / (plain - best):.1f} % of the saving",
     ):
         assert told in words, told
     speeds = np.linspace(0.0, 34.0, 3401)

@@ -146,7 +146,7 @@ def home_unknown(monkeypatch, tmp_path):
 
 def platformdirs_missing(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "platformdirs", None)
-    return "platformdirs, which finds it, is missing"
+    return "platformdirs, which finds the folder, is missing"
 
 
 def given(place, message):
@@ -186,7 +186,7 @@ def test_no_folder_compiles_in_memory(numba, folder, monkeypatch, tmp_path, name
     monkeypatch.chdir(tmp_path)
     message = NOWHERE[name](monkeypatch, tmp_path)
     present = set(tmp_path.iterdir())
-    with pytest.warns(CacheWarning, match=f"made anew in each session.*{message}"):
+    with pytest.warns(CacheWarning, match=f"compiled again in each session.*{message}"):
         assert load_module(TEXT, keep=True).twice(2.1) == 4.2
     assert set(tmp_path.iterdir()) == present
 
@@ -200,7 +200,7 @@ def test_a_full_disk_compiles_in_memory(numba, folder, limit):
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
     try:
-        with pytest.warns(CacheWarning, match=r"made anew in each session.*too large"):
+        with pytest.warns(CacheWarning, match=r"compiled again in each session.*too large"):
             module = load_module(TEXT, keep=True)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)

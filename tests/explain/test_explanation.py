@@ -276,7 +276,7 @@ def test_a_magnitude_is_told_by_its_components(quantity):
     assert largest_error(told) < STEP
 
 
-@every(("quantity", "words"), [("|balancing_torque|", "only of a vector"), ("|Q|", "quantity is 'Q', allowed")])
+@every(("quantity", "words"), [("|balancing_torque|", "only vectors have"), ("|Q|", "quantity is 'Q', allowed")])
 def test_magnitudes_of_what_is_no_vector_are_refused(quantity, words):
     with pytest.raises(ks.QuantityError, match=words):
         solved(SCENES["plain, everything"], 1.1).explain(quantity, 1.1)

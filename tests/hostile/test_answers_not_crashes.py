@@ -351,7 +351,7 @@ REFUSED = [
     *each(
         ks.QuantityError,
         *((getattr(SOLUTION, name), ODD, "allowed") for name in NAMED),
-        (SOLUTION.reaction, [["O", "A"], ("O", "A"), {"O", "A"}, np.array(["O", "A"])], "ask for one at a time"),
+        (SOLUTION.reaction, [["O", "A"], ("O", "A"), {"O", "A"}, np.array(["O", "A"])], "use one at a time"),
     ),
     *each(
         ks.errors.CaseError,

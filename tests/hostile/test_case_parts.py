@@ -119,7 +119,7 @@ WRONG = {
     ),
     "mid-length of a slider": (
         GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"\npin = "D"\nslider = { centre = "mid-length" }',
-        'variants.a.groups[2]: centre "mid-length" is for links between two joints',
+        'variants.a.groups[2]: centre "mid-length" needs a link between two joints',
     ),
     "joint that is not there": (
         GROUP + 'kind = "slider"\ncoupler_length = "1 m"\nlabel = "2"\npin = "D"\non = "Q"',
@@ -298,7 +298,7 @@ WRONG_DESIGNS = {
     "reference not there": (f'{INTRO}{VARY}{AIM}reference = "plane"\n', "design.one.reference is 'plane', allowed"),
     "variant is itself": (
         '[design.cam-circle]\nkind = "torque-free-cam"\nvariant = "cam-circle"\n',
-        "design.cam-circle.variant is what it is to find: give another",
+        "design.cam-circle.variant is the name of the result: give another",
     ),
     "number not there": (
         f'{INTRO}{AIM}vary = {{ "spring.stifness" = ["6 N/m", "9 N/m"] }}\n',

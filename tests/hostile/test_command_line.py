@@ -158,11 +158,11 @@ def test_options_that_cannot_be_are_refused_in_a_line(name, capsys):
 def test_too_many_angles_name_their_memory(capsys):
     with pytest.raises(SystemExit):
         main(["run", "saw", "--angles", "1000000000"])
-    assert "must be at most 10000000, as 1000000000 would take 1000 GB of memory" in capsys.readouterr().err
+    assert "must be at most 10000000, as 1000000000 would need 1000 GB of memory" in capsys.readouterr().err
 
 
 UNKNOWN = {
-    "case": (["run", "no such"], "no such file, and no shipped case of that name"),
+    "case": (["run", "no such"], "there is no file and no shipped case of this name"),
     "variant": (["run", "{case}", "--variant", "plan"], "did you mean 'plain'?"),
     "variant to compare": (["compare", "{case}", "--variant", "x"], "variant is 'x', allowed: 'plain', 'cam'"),
     "figure": (["plot", "{case}", "--out", "x", "--only", "torqe"], "did you mean 'torque'?"),
@@ -202,7 +202,7 @@ def test_memory_that_runs_out_is_told_in_a_line(saw, monkeypatch, capsys):
         raise MemoryError("Unable to allocate 8 GiB")
 
     monkeypatch.setattr("kinetostatics.casefile.case.Case.solve", solve)
-    assert "there is not enough memory; take fewer" in refused(["run", saw], capsys)
+    assert "there is not enough memory; use fewer" in refused(["run", saw], capsys)
 
 
 # Whatever the output takes, and whatever stops a command, it ends in a line

@@ -70,7 +70,7 @@ WANTED = {
     "shares": (lambda thing: ks.plots.shares(thing, "O"), SOLUTIONS),
     "chain_unit_motion": (lambda thing: ks.plots.chain_unit_motion(thing, "rocker"), SOLUTIONS),
     "characteristics": (lambda thing: ks.linkage.characteristics({"a": thing}, "a"), f"a {SOLUTIONS}"),
-    "model_ladder": (ks.plots.model_ladder, "needs must be what ks.needs(...) returns"),
+    "model_ladder": (ks.plots.model_ladder, "needs must be a Needs, as from ks.needs(...), got"),
 }
 
 
@@ -144,7 +144,7 @@ CALLS = {
         f"frames {frames!r}": (lambda frames=frames: ks.plots.animation(PLAIN, frames=frames), "frames must be a whole")
         for frames in (0, -1, 2.5, "ten")
     },
-    "no solutions": (lambda: ks.plots.torque({}), "there are no solutions to draw"),
+    "no solutions": (lambda: ks.plots.torque({}), "give at least one solution to draw"),
     "no reactions": (lambda: ks.plots.animation(PLAIN, joints=()), "joints must name at least one"),
     "other direction": (lambda: ks.plots.shaking_force(PLAIN, by="x"), "by is 'x'"),
     "third order": (lambda: ks.plots.chain_unit_motion(FOUR_BAR, "rocker", 3), "order must be 1 or 2, got 3"),
@@ -273,7 +273,10 @@ MIXED = [
     (KANE, solved(MACHINE), "nonsense", "not set up to give nonsense"),
     (KANE, solved(ks.four_bar(0.2, 0.2, 0.2, rocker_pivot=(0.2, 0.0), assembly="open")), "O", "passes change points"),
     (PAPERS, solved(cam(ks.cams.Sampled(TURN, 0.3 + 0.02 * np.cos(TURN)))), "O", "this cam"),
-    *((name, solved(MACHINE, friction=RUBBING), "O", "no friction, but the scene has some in O") for name in (KANE, PAPERS)),
+    *(
+        (name, solved(MACHINE, friction=RUBBING), "O", "no friction, but the scene has some in O")
+        for name in (KANE, PAPERS)
+    ),
     (NEWTON, solved(MACHINE), "nonsense", "give no nonsense"),
     (NEWTON, solved(MACHINE), "cam_force", "give no cam_force"),
     (PRINTED, solved(MACHINE), "O", "circular cam; crank-slider has none"),
@@ -285,7 +288,7 @@ MIXED = [
     ("two-mass coupler", solved(ks.crank_slider(0.1, 0.4, slider=ks.Link(5.0))), "O", "no coupler mass"),
     ("two-mass coupler", solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "no coupler mass"),
     *((name, solved(ks.Mechanism("fan", ks.Crank(0.1), ())), "O", "fan is only a crank") for name in BY_TURN),
-    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "evenly over one turn"),
+    ("spectral differentiation", solved(MACHINE, TURN[:-1]), "O", "even crank angles over one turn"),
     ("spectral differentiation", solved(MACHINE, TURN[:4] * 6), "O", "8 samples are more than the 4"),
 ]  # fmt: skip
 

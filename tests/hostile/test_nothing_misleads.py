@@ -446,7 +446,7 @@ IMPURE = {
     ),
     "clock": (
         lambda: ks.ProcessForce(lambda q: time.perf_counter()),
-        "it must be pure, a function of the motion alone",
+        "It must be pure, a function of the motion alone",
     ),
 }
 WAYS = {

@@ -29,11 +29,14 @@ def spring(free_angle, **against):
 
 
 REFUSED = {
-    "force as motion": (lambda: at_rest(SAW).measure("guide_force"), r'no quantity of motion; .* solution.scalar\("gu'),
-    "reaction as motion": (lambda: at_rest(SAW).measure("O"), r'no quantity of motion; .* solution.reaction\("O"\)'),
+    "force as motion": (
+        lambda: at_rest(SAW).measure("guide_force"),
+        r'not a quantity of motion; .* solution.scalar\("gu',
+    ),
+    "reaction as motion": (lambda: at_rest(SAW).measure("O"), r'not a quantity of motion; .* solution.reaction\("O"\)'),
     "travel as motion": (
         lambda: at_rest(SAW).measure("slider_velocity"),
-        r'is no quantity of motion; read it by solution.travel_velocity\("slider"\)',
+        r'is not a quantity of motion; read it by solution.travel_velocity\("slider"\)',
     ),
     "whole as motion": (lambda: at_rest(SAW).measure("shaking_force"), "read it by solution.shaking_force$"),
     "motion that is not there": (lambda: at_rest(SAW).measure("presure"), "quantity is 'presure', allowed: 'bal"),

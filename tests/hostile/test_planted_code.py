@@ -128,7 +128,7 @@ def test_damaged_machine_code_is_recompiled(entry, file, damage):
         warnings.simplefilter("always")
         assert load_module(TEXT, keep=True).twice(2.1) == 4.2
     assert [item.category for item in caught] == [CacheWarning]
-    assert "was damaged, and is compiled anew" in str(caught[0].message)
+    assert "was damaged and is compiled again" in str(caught[0].message)
     assert is_intact(entry)
     again = load_module(TEXT, keep=True)
     assert (sum(again.twice.stats.cache_hits.values()), again.twice(2.1)) == (1, 4.2)

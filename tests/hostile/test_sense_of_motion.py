@@ -279,7 +279,7 @@ def test_a_case_file_refuses_what_is_no_sense(tmp_path, sense):
 
 def test_function_cannot_read_the_sense_at_rest():
     loads = ks.Torque(lambda q: -5.0 * q.crank_sense, on="crank")
-    with pytest.raises(ks.ParameterError, match=r"asks for crank_sense, but .* both 0: give sense=\+1 or sense=-1"):
+    with pytest.raises(ks.ParameterError, match=r"uses crank_sense, but .* both 0: give sense=\+1 or sense=-1"):
         _ = ks.solve(PRESS, 0.5, crank_speed=0.0, loads=loads).balancing_torque
     assert ks.solve(PRESS, 0.5, crank_speed=0.0, sense=-1, loads=loads).balancing_torque == pytest.approx(-5.0)
 

@@ -216,7 +216,7 @@ OTHERS = {
     "function that is noise": (
         lambda: steady(scene(torque(lambda motion: np.random.default_rng().random(motion.shape))), kloss(), 1.0),
         ks.ParameterError,
-        "it must be pure, a function of the motion alone",
+        "It must be pure, a function of the motion alone",
     ),
     "function that tells nothing": (
         lambda: steady(scene(torque(lambda motion: None)), kloss(), 1.0),

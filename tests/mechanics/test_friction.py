@@ -172,7 +172,7 @@ def test_what_is_not_found_to_rounding_is_said():
     s = rubbed()
     s._values["friction_residual"] = np.full(TURN.shape, 1e-6)
     assert not s.converged.any()
-    with pytest.warns(ks.ConditionWarning, match="not found to rounding at 90 of 90 crank angles"):
+    with pytest.warns(ks.ConditionWarning, match="not converged to rounding at 90 of 90 crank angles"):
         jamming.check(s, "raise")
 
 

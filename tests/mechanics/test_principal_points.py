@@ -189,7 +189,7 @@ def test_no_mass_has_no_mass_centre():
     s = ks.solve(ks.crank_slider(0.3, 0.8), TURN, crank_speed=9.0)
     points = ks.principal_points(s.mechanism)
     for ask in (points.mass_centre, points.mass_centre_velocity, points.mass_centre_acceleration, points.contour):
-        with pytest.raises(ks.ParameterError, match="has no mass, so no mass centre; give at least one link a mass"):
+        with pytest.raises(ks.ParameterError, match="has no mass and so no mass centre; give at least one link a mass"):
             ask(s)
     with pytest.raises(ks.ParameterError, match="no mass"):
         _ = points.moduli

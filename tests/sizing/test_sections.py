@@ -398,7 +398,7 @@ def test_needs_reports_rigidity():
     shaft = {"length": 0.5, "polar_moment": 2e-5, "shear_modulus": 79e9}
     found = ks.needs(solved(), "O", within=0.05, progress=False, bars={"coupler": SAW}, shaft=shaft)
     assert list(found.rigidity) == ["coupler", "shaft"]
-    assert f"rigid coupler is within {found.rigidity['coupler'].departure:.2g}" in str(found)
+    assert f"rigid coupler: error {found.rigidity['coupler'].departure:.2g}" in str(found)
     assert "Timoshenko" in found.rigidity["shaft"].table().loc["departure", "formula"]
     assert ks.needs(solved(), "O", within=0.05, progress=False).rigidity == {}
 

@@ -135,6 +135,13 @@ SUGGESTED = [
     ("ks.plots.animation(s, joints=['BB'], frames=3)", "B"),
     ("ks.plots.shaking_force(s, by='directon')", "direction"),
     ("ks.plots.acceleration_error(s, slider='slidr')", "slider"),
+    (
+        "ks.plots.sweep_map(pd.DataFrame({'crank_length [m]': [0.3], 'x': 1}), 'crank_length', 'x')",
+        "crank_length [m]",
+    ),
+    ("ks.sizing.bearing(s, 'OO', capacity=1e5, static_capacity=1e5)", "O"),
+    ("ks.needs(s, 'guide_forse')", "guide_force"),
+    ("ks.tolerances(SCENE, ['largest O'], {'crank_lenght': 'normal 0.3 m +- 1 mm'})", "crank_length"),
     ("SCENE.varied({'crank_lenght': 0.31})", "crank_length"),
     ("SCENE.solve(9, engine='compild')", "compiled"),
     ("ks.compile(SCENE, ('guide_forse',))", "guide_force"),

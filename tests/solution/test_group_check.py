@@ -262,7 +262,7 @@ def chain(change=None):
 @pytest.mark.parametrize("change", ["wrong force", "wrong ratio"])
 def test_a_group_whose_forces_lose_power_is_warned_of(interpreted, engine, change):
     with pytest.warns(
-        UserWarning, match=r"mine: the balancing torque .* differ by up to .*ks\.check\(group\) says where"
+        UserWarning, match=r"mine: the balancing torque .* differs from .* by up to .*see ks\.check\(group\)"
     ):
         solve(chain(change), engine=engine).reaction("O")
 

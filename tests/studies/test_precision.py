@@ -242,7 +242,7 @@ def test_command_prints_front_and_files(few, tmp_path, capsys):
     names = [f"sawframe_2r63_precision.{kind}" for kind in ("csv", "png", "svg")]
     assert sorted(path.name for path in tmp_path.iterdir()) == names
     assert printed.splitlines()[-3:] == [str(tmp_path / name) for name in names]
-    front = printed.split("nearer than these")[1]
+    front = printed.split("faster and more accurate")[1]
     assert "ours, NumPy" in front or "ours, torque by powers" in front
     assert "nan" not in front
     assert told.splitlines() == [method.name for method in FEW] * 2

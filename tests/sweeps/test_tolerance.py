@@ -93,7 +93,7 @@ def test_counts_that_are_no_power_of_two_are_refused(count):
     [
         (ks.load_case("chain_unit"), '"tolerances" of the case file has none for this variant'),
         (ram, "give spreads, such as"),
-        (ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi), "are given, such as"),
+        (ks.Scene(ks.crank_slider(0.08, 0.4, slider=ks.Link(25)), 4 * np.pi), "give spreads, such as"),
     ],
 )
 def test_tolerances_need_spreads(case, remedy):

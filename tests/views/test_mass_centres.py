@@ -78,7 +78,7 @@ def test_contour_of_random_chains_ends_at_the_mass_centre(seed, axes):
         ((BARE, 60, 3), ks.ParameterError, "before must be a Mechanism"),
         ((BARE, "60"), ks.ParameterError, "angle"),
         ((BARE, np.nan), ks.ParameterError, "angle"),
-        ((ks.crank_slider(0.038, 0.3), 60), ks.ParameterError, "has no mass, so no mass centre"),
+        ((ks.crank_slider(0.038, 0.3), 60), ks.ParameterError, "has no mass and so no mass centre"),
         ((ks.crank_slider(np.array([[0.03], [0.04]]), 0.3, slider=ks.Link(1.0)), 60), ks.ParameterError, "one design"),
         (
             (ks.crank_slider(0.2, 0.3, guide_offset=0.15, slider=ks.Link(1.0)), 280),

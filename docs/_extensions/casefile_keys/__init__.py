@@ -61,13 +61,13 @@ def page():
         lines += [f"({part.anchor})=", f"## {part.title}", "", part.about, ""]
         if not part.keys:
             continue
-        lines += ["| key | takes | default | meaning | example |", "|---|---|---|---|---|"]
+        lines += [":::{container} keys", "", "| key | takes | default | meaning | example |", "|---|---|---|---|---|"]
         for key in part.keys:
             shown = f"`{key.example}`" if key.example else ""
             said = key.meaning.replace("[[", "\\[\\[")
             row = (f"`{key.name}`", key.takes, key.default, said, shown)
             lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |")
-        lines.append("")
+        lines += ["", ":::", ""]
     return "\n".join(lines)
 
 

@@ -1,6 +1,6 @@
 """Tables of designs: goal, numbers that vary, limits.
 
-Outputs, limits and bounds stay texts here, for their names depend on the variant; `casefile.designs` reads them.
+Outputs, limits and bounds remain texts here, because their names depend on the variant; `casefile.designs` reads them.
 """
 
 from typing import Annotated, Literal
@@ -29,22 +29,22 @@ Vary = Annotated[dict[str, Bounds], Field(min_length=1)]
 
 
 class RobustTable(Table):
-    """A quantile over how numbers spread, keys as of `ks.design.Spread`."""
+    """A quantile over the spread of numbers; keys are the arguments of `ks.design.Spread`."""
 
     quantile: Number
-    """Which quantile of the output counts, between 0 and 1."""
+    """Quantile of the output, between 0 and 1."""
     spreads: dict[str, str]
-    """How numbers spread, by path, as in [tolerances]."""
+    """Spread of numbers by path, as in [tolerances]."""
     samples: Count = 256
-    """Machines drawn while it is searched; a power of two."""
+    """Number of machines sampled in the search; a power of two."""
     trim: Number = 0.0
-    """Share of the crank speed within which each machine's own is set to what suits it best."""
+    """Range of speed adjustment, relative to the crank speed; each machine runs at its best speed within it."""
     seed: Seed = 0
     """Of the drawing."""
 
     @property
     def spread(self) -> Spread:
-        """The spread that it describes."""
+        """The spread described by the table."""
         return Spread(**dict(self))
 
     _check = must_describe("spread")
@@ -54,15 +54,15 @@ class DesignTable(Table):
     """Keys common to every design."""
 
     variant: str | None = None
-    """Which variant varies: the only one, or the first besides the reference, unless told."""
+    """Variant that varies; by default the only one, or the first besides the reference."""
     reference: str | None = None
-    """Which one ratios refer to: the reference of the variant unless told."""
+    """Reference of ratios; by default the reference of the variant."""
     limits: tuple[str, ...] = ()
-    """What must hold, at true extremes."""
+    """Limits of outputs, at exact extremes."""
     starts: Count = 1
-    """Searches; the first begins at the variant itself."""
+    """Number of searches; the first begins at the variant itself."""
     seed: Seed = 0
-    """Of where the others begin."""
+    """Seed of the random starts of the other searches."""
 
 
 class SearchTable(DesignTable):
@@ -71,7 +71,7 @@ class SearchTable(DesignTable):
     vary: Vary
     """Lowest and highest value, by path."""
     duties: dict[str, Number] | None = None
-    """Share of the time by variant, in place of one variant: outputs are weighted means, limits hold in each."""
+    """Share of the time by variant, instead of one variant: outputs are weighted means, limits apply to each."""
     angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
     """Crank angles over the period."""
 
@@ -88,11 +88,11 @@ class OptimumTable(SearchTable):
     kind: Literal["optimum"]
     """The best of any machine within bounds and limits."""
     minimise: str | None = None
-    """Output to be made least."""
+    """Output to minimise."""
     maximise: str | None = None
-    """Output to be made largest, in place of that."""
+    """Output to maximise, instead of `minimise`."""
     robust: RobustTable | None = None
-    """A quantile over how numbers spread is the goal."""
+    """Goal: a quantile over the spread of numbers."""
 
     @model_validator(mode="after")
     def _one_aim(self):
@@ -102,10 +102,10 @@ class OptimumTable(SearchTable):
 
 
 class TorqueFreeCamTable(DesignTable):
-    """A cam-balanced crank-slider; the mean magnitude of its torque is made least unless told."""
+    """A cam-balanced crank-slider; by default with the smallest mean magnitude of its torque."""
 
     kind: Literal["torque-free-cam"]
-    """A cam-balanced crank-slider that needs least torque."""
+    """A cam-balanced crank-slider with the least torque."""
     cosine: Annotated[int, Field(strict=True, ge=1, le=64)] = 8
     """Cosine terms of the cam."""
     sine: Terms = 0
@@ -113,19 +113,19 @@ class TorqueFreeCamTable(DesignTable):
     vary: dict[str, Bounds] = Field(default_factory=dict)
     """Further numbers that vary, or other bounds: lowest and highest value, by path."""
     minimise: str | None = None
-    """Output to be made least: the mean magnitude of the torque unless told."""
+    """Output to minimise; by default the mean magnitude of the torque."""
     maximise: str | None = None
-    """Output to be made largest, in place of that."""
+    """Output to maximise, instead of `minimise`."""
     robust: RobustTable | None = None
-    """A quantile over how numbers spread is the goal."""
+    """Goal: a quantile over the spread of numbers."""
     ends: Annotated[tuple[float, float] | None, BeforeValidator(pair_of("m"))] = None
-    """Where the slider turns back; as in the variant unless told."""
+    """Extreme positions of the slider; by default as in the variant."""
     guide_offset: Coordinate | None = None
-    """Distance of the guide from O; as in the variant unless told."""
+    """Distance of the guide from O; by default as in the variant."""
     coupler_spring: Angle | None = None
     """Free angle of a torsion spring between coupler and slider that carries the coupler's weight."""
     counterweight: Mass | None = None
-    """Mass on the crank, whose place is found, and a guide offset with it."""
+    """Mass on the crank; the search finds its place and a guide offset."""
     cubic: Annotated[tuple[float, float] | None, BeforeValidator(pair_of("N/m^3"))] = None
     """Bounds of the springs' cubic term; without it they are linear."""
 
@@ -144,13 +144,13 @@ class FrontTable(SearchTable):
     minimise: Annotated[tuple[str, ...], Field(min_length=2, max_length=2)]
     """The two outputs."""
     points: Annotated[int, Field(strict=True, ge=2, le=100)] = 9
-    """Designs on the front."""
+    """Number of designs on the front."""
 
 
 KINDS = {"optimum": OptimumTable, "torque-free-cam": TorqueFreeCamTable, "front": FrontTable}
 
 
 class OneDesign(Table):
-    """One design; its key `kind` tells which."""
+    """One design of the kind in its key `kind`."""
 
     design: one_of("design", KINDS)  # type: ignore[valid-type]

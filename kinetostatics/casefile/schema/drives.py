@@ -1,6 +1,6 @@
 """Tables of drives: motors by kind, and flywheels; keys are the arguments of `Motor`.
 
-Their types carry no SI unit, so designs do not vary them: a variant is solved at constant speed.
+Their types have no SI unit, so designs do not vary them: a variant is solved at constant speed.
 """
 
 from typing import Annotated, Any, Literal
@@ -28,13 +28,13 @@ class MotorTable(Table):
     """Keys common to every motor."""
 
     transmission: Factor = 1.0
-    """Motor speed over crank speed; negative where they turn against each other."""
+    """Motor speed over crank speed; negative if they turn in opposite directions."""
     inertia: MomentOfInertia = 0.0
-    """Of the rotor, at its own shaft."""
+    """Moment of inertia of the rotor, at its own shaft."""
 
     @property
     def motor(self) -> Motor:
-        """The motor that it describes."""
+        """The motor described by the table."""
         arguments = dict(self)
         return getattr(Motor, arguments.pop("kind"))(**arguments)
 
@@ -45,9 +45,9 @@ class KlossTable(MotorTable):
     kind: Literal["kloss"]
     """An induction motor by Kloss's formula."""
     power: Power
-    """Rated, at the shaft."""
+    """Rated power at the shaft."""
     speed: MotorSpeed
-    """Rated, of the motor's shaft."""
+    """Rated speed of the motor's shaft."""
     synchronous_speed: MotorSpeed
     """Without load."""
     overload: Factor
@@ -56,7 +56,7 @@ class KlossTable(MotorTable):
 
 class LinearTable(MotorTable):
     kind: Literal["linear"]
-    """A torque that falls in a straight line."""
+    """A torque that falls linearly with speed."""
     torque: StandstillTorque
     """At rest."""
     speed: MotorSpeed
@@ -67,7 +67,7 @@ class ConstantTable(MotorTable):
     kind: Literal["constant"]
     """The same torque at every speed."""
     torque: Torque
-    """At the motor's shaft."""
+    """Torque at the motor's shaft."""
 
 
 class TorqueTable(MotorTable):
@@ -76,11 +76,11 @@ class TorqueTable(MotorTable):
     kind: Literal["table"]
     """Torque over speed, by rows."""
     speed: _row_type("rad/s") = None  # type: ignore[valid-type]
-    """Of the motor's shaft, a row of texts."""
+    """Speeds of the motor's shaft, a list of texts."""
     torque: _row_type("N m") = None  # type: ignore[valid-type]
-    """At the motor's shaft, a row of texts."""
+    """Torques at the motor's shaft, a list of texts."""
     file: str | None = None
-    """CSV file with columns speed and torque, in place of the rows."""
+    """CSV file with columns speed and torque, instead of the rows."""
 
     @property
     def motor(self):
@@ -110,6 +110,6 @@ class DriveTable(Table):
     """A motor, and a flywheel on the crank."""
 
     motor: MotorOfKind
-    """What drives."""
+    """The motor."""
     flywheel: MomentOfInertia = 0.0
-    """Moment of inertia on the crank, beside its own link."""
+    """Moment of inertia on the crank, in addition to its link."""

@@ -13,7 +13,7 @@ from .texts import Angle
 
 
 def _position(text):
-    """A text that is a length or an angle; which of them tells the group."""
+    """A text that is a length or an angle, depending on the group."""
     try:
         to_si(text, "rad")
     except ValueError:
@@ -23,18 +23,18 @@ def _position(text):
 
 Position = Annotated[str, BeforeValidator(_position)]
 POSITIONS = ("amplitude", "mean", "start", "end", "position", "noise")
-"""Keys that hold positions."""
+"""Keys of positions."""
 
 
 class LawTable(Table):
     kind: str
 
     def law(self, unit) -> Any:
-        """Law or segment with positions in this unit; of a file, the function of its columns that makes the law."""
+        """Law or segment with positions in this unit; for a file, the function of its columns that returns the law."""
         return getattr(laws, self.kind.replace(" ", "_"))(**self.values(unit))
 
     def values(self, unit):
-        """Values by key, but for the kind, with positions in the SI unit."""
+        """Values by key, without the kind, with positions in the SI unit."""
         try:
             return {
                 name: to_si(value, unit) if name in POSITIONS and value is not None else value
@@ -49,18 +49,18 @@ class SegmentCurveTable(LawTable):
     kind: Literal["harmonic", "cycloidal", "modified sine", "modified trapezoid"]
     """Standard curve."""
     start: Position
-    """Position at its start; a length, of a swinging follower an angle."""
+    """Position at its start; a length, or for a swinging follower an angle."""
     end: Position
     """Position at its end."""
     angle: Angle
-    """Crank angle that it takes."""
+    """Crank angle of the segment."""
 
 
 class SegmentPolynomialTable(SegmentCurveTable):
     kind: Literal["polynomial"]  # type: ignore[assignment]
     """Polynomial between the same positions."""
     powers: Literal["3-4-5", "4-5-6-7"] | tuple[int, ...] = "3-4-5"
-    """Of the polynomial."""
+    """Powers of the polynomial."""
 
 
 class SegmentDwellTable(LawTable):
@@ -69,7 +69,7 @@ class SegmentDwellTable(LawTable):
     position: Position
     """Where it rests."""
     angle: Angle
-    """Crank angle that it takes."""
+    """Crank angle of the segment."""
 
 
 CURVES = dict.fromkeys(("harmonic", "cycloidal", "modified sine", "modified trapezoid"), SegmentCurveTable)
@@ -80,7 +80,7 @@ class LawCosineTable(LawTable):
     kind: Literal["cosine"]
     """A cosine of the crank angle."""
     amplitude: Position
-    """Half the stroke; a length, of a swinging follower an angle."""
+    """Half the stroke; a length, or for a swinging follower an angle."""
     mean: Position
     """Position at mid-stroke."""
     phase: Angle = 0.0
@@ -89,7 +89,7 @@ class LawCosineTable(LawTable):
 
 class LawJoinedTable(LawTable):
     kind: Literal["joined"]
-    """Segments one after the other, which together take a turn."""
+    """Segments in sequence that together fill one turn."""
     segments: list_of(Segment, "segments", 1)  # type: ignore[valid-type]
     """A table for each segment, in their order."""
     smooth: Literal["acceleration", "velocity"] = "acceleration"
@@ -105,7 +105,7 @@ class LawFileTable(LawTable):
     table: str
     """CSV file of crank angle and position."""
     noise: Position | None = None
-    """Standard deviation of the positions, which smooths them; without, the curve runs through all of them."""
+    """Standard deviation of the positions, for smoothing; without it the curve passes through all of them."""
 
     def law(self, unit):
         return partial(laws.table, noise=self.values(unit)["noise"])

@@ -1,4 +1,4 @@
-"""Tables of groups and loads, made of the rules of their classes: keys, units and bounds are those of the fields."""
+"""Tables of groups and loads from the rules of their classes: keys, units and bounds are those of the fields."""
 
 import re
 from dataclasses import MISSING, fields

@@ -45,7 +45,7 @@ class Table(BaseModel):
 
 
 def must_describe(name) -> Any:
-    """Validator of tables: the object that they describe can be made; it is their attribute of this name."""
+    """Validator of tables: the described object, their attribute of this name, can be constructed."""
 
     def check(table):
         try:
@@ -58,11 +58,11 @@ def must_describe(name) -> Any:
 
 
 TAGS: dict[str, Any] = {}
-"""Table by the tag that pydantic puts among the keys of a fault in a table of several kinds."""
+"""Table by pydantic's tag among the keys of a fault in a table of several kinds."""
 
 
 def kinds(tag):
-    """Words for the kinds of the family of a tag."""
+    """Names of the kinds in the family of a tag."""
     family = tag.partition(":")[0]
     return [other.partition(":")[2] for other in TAGS if other.startswith(f"{family}:")]
 
@@ -103,23 +103,23 @@ class GravityTable(Table):
     acceleration: GravityAcceleration = 9.81
     """Of free fall."""
     direction: Angle = -math.pi / 2
-    """In which weights pull, from +x."""
+    """Direction of the pull, from +x."""
 
 
 # Values of loads
 
 
 class ValuesTable(Table):
-    """Values by crank angle or by travel, in a CSV file; pressures with the area that they act on."""
+    """Values by crank angle or by travel, in a CSV file; pressures need the piston area."""
 
     file: str
     """CSV file beside the case; each column headed by its name and unit: travel [mm], force [kN]."""
     over: Literal["angle", "travel"] | None = None
-    """Which column to go by where the file has both."""
+    """Column to use if the file has both."""
     area: Annotated[float | None, BeforeValidator(reader("m^2"))] = None
-    """By which pressures become forces along the guide; negative where they push against its direction."""
+    """Piston area for forces along the guide from pressures; negative if they push against its direction."""
     period: Period = None
-    """Crank angle after which the table repeats: one turn unless told, two for four strokes."""
+    """Crank angle after which the table repeats: by default one turn, two for four strokes."""
     slider: str | None = None
     """The slider whose travel or dead centre is read; by default the one that the load acts on."""
     zero: Zero = None
@@ -146,14 +146,14 @@ class CircleTable(Table):
     kind: Literal["circle"]
     """A circle."""
     radius: Length
-    """Of the circle that the roller centre runs on."""
+    """Radius of the circle of roller centres."""
     centre: Point = (0.0, 0.0)
-    """Its centre, from O."""
+    """Centre of the circle, from O."""
 
 
 class CosineLawTable(Table):
     kind: Literal["cosine-law"]
-    """Moves the slider exactly by a cosine."""
+    """A curve that moves the slider exactly by a cosine."""
     amplitude: Length
     """Half the stroke of the slider."""
     mean: Length
@@ -166,16 +166,16 @@ class SampledTable(Table):
     table: str
     """CSV file of crank angle and radius of the roller centre."""
     noise: Length | None = None
-    """How far off the radii may be, which smooths them; without, the curve runs through all of them."""
+    """Standard deviation of the radii, for smoothing; without it the curve passes through all of them."""
 
 
 class HarmonicTable(Table):
     kind: Literal["harmonic"]
     """A series of cosines and sines."""
     cosine: Annotated[Any, BeforeValidator(series_of("m")), Harmonic.RULES.rules["cosine"]]
-    """Mean radius, and coefficients of the cosines of once, twice ... the crank angle from the guide."""
+    """Mean radius, then coefficients of the cosines of 1, 2 ... times the crank angle from the guide."""
     sine: Annotated[Any, BeforeValidator(series_of("m")), Harmonic.RULES.rules["sine"]] = ()
-    """Coefficients of the sines of once, twice ... that angle."""
+    """Coefficients of the sines of 1, 2 ... times the crank angle from the guide."""
 
 
 CAMS = {"circle": CircleTable, "cosine-law": CosineLawTable, "harmonic": HarmonicTable, "sampled": SampledTable}
@@ -191,11 +191,11 @@ class FaceTable(Table):
     """Width and materials of a flat face on a cam: with it "contact_pressure" is an output."""
 
     width: Length
-    """Of the contact."""
+    """Width of the contact."""
     youngs_modulus: Modulus
-    """Of the roller or face, and of the cam unless that is told."""
+    """Young's modulus of the roller or face, and by default of the cam."""
     poissons_ratio: PoissonsRatio
-    """Of the roller or face, from 0 to 0.5, and of the cam unless that is told."""
+    """Poisson's ratio of the roller or face, from 0 to 0.5, and by default of the cam."""
     cam_youngs_modulus: Modulus | None = None
     """Of the cam."""
     cam_poissons_ratio: PoissonsRatio | None = None
@@ -206,7 +206,7 @@ class RollerTable(FaceTable):
     """A cam's roller with its materials: with it "contact_pressure" is an output."""
 
     radius: Length
-    """Of the roller."""
+    """Radius of the roller."""
 
 
 # Counterweights
@@ -224,32 +224,32 @@ def _ratio(value):
 
 class CounterweightTable(Table):
     mass: Mass | None = None
-    """Of the counterweight; its arm follows."""
+    """Mass of the counterweight; its arm follows."""
     arm: Coordinate | None = None
-    """Of its centre from the link's reference joint; negative behind the joint. Its mass follows."""
+    """Distance of its centre from the link's reference joint; negative behind the joint. Its mass follows."""
     whole_link: Annotated[bool, Field(strict=True)] = False
-    """Whether mass and arm are those of the link together with its counterweight."""
+    """Whether mass and arm are those of the link including its counterweight."""
     largest_mass: Mass | None = None
-    """Limit of what follows."""
+    """Limit of the mass."""
     largest_arm: Length | None = None
-    """Limit of what follows."""
+    """Limit of the arm."""
     keep_out: Length | None = None
-    """Radius around the reference joint that it must stay outside of."""
+    """Radius around the reference joint in which it must not lie."""
 
 
 class BalancingTable(Table):
     method: Literal["full", "partial", "optimal"]
-    """The whole shaking force, a part of it by the crank alone, or the least norm of it."""
+    """Full, partial (by the crank only) or optimal (least norm) balancing of the shaking force."""
     ratio: Annotated[float | str, BeforeValidator(_ratio)] = "overall"
-    """Of a partial balance: "across", "along", "overall", or the ratio of unbalances, a number."""
+    """Ratio for partial balancing: "across", "along", "overall", or a number."""
     norm: Literal["largest", "mean", "along", "across", "weighted", "largest moment", "largest weighted"] = "largest"
-    """What an optimal balance makes least."""
+    """Norm that optimal balancing minimises."""
     about: Point = (0.0, 0.0)
     """Point of the shaking moment."""
     weights: tuple[Weight, Weight] = (1.0, 0.0)
-    """Of force, 1/N, and moment, 1/(N m), for the norms "weighted" and "largest weighted"."""
+    """Weights of force, 1/N, and moment, 1/(N m), for the norms "weighted" and "largest weighted"."""
     phase: Annotated[bool, Field(strict=True)] = False
-    """Whether a counterweight may lie beside its link's line."""
+    """Whether a counterweight may be off its link's line."""
     crank: CounterweightTable | None = None
     """Counterweight on the crank."""
     coupler: CounterweightTable | None = None
@@ -267,7 +267,7 @@ def validate(model, raw, place):
 
 
 NOT_A_TABLE = ("model_type", "dict_type")
-"""Pydantic's names of the fault of a value in place of a table."""
+"""Pydantic's names of the fault of a value instead of a table."""
 
 
 def _sentence(model, item, place):

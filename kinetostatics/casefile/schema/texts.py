@@ -1,6 +1,6 @@
-"""Texts of a case file: numbers with units, and words in their place, as pydantic types.
+"""Texts of a case file: numbers with units, or words instead, as pydantic types.
 
-Each type ends with its SI unit, by which `build.places_by_path` finds the numbers that designs may vary.
+Each type ends with its SI unit; with it `build.places_by_path` finds the numbers that designs may vary.
 """
 
 import math
@@ -76,7 +76,7 @@ def _stiffness(text):
 
 
 def list_reader(read_part, words, size=None, least=0):
-    """Function that reads a list of `size` parts, or of `least` parts at least; `words` tell what it must be."""
+    """Function that reads a list of `size` parts, or of at least `least` parts; `words` describe the list."""
 
     def read(value):
         if not isinstance(value, list | tuple) or len(value) < (size or least) or len(value) > (size or len(value)):
@@ -92,7 +92,7 @@ def pair_of(unit):
 
 
 def series_of(unit, first="0.3", second="0.02", least=0):
-    """Function that reads a list of texts with units; two numbers are its example."""
+    """Function that reads a list of texts with units; the example has two numbers."""
     words = f'a list such as ["{first} {unit}", "{second} {unit}"]'
     return list_reader(partial(to_si, unit=unit), words, least=least)
 

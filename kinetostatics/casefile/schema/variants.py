@@ -44,13 +44,13 @@ Plane, CoupleUnbalance = (field_of(Rotor.RULES.rules[name]) for name in ("plane"
 
 class SpringTable(Table):
     stiffness: Stiffness
-    """Of all springs; "balance the slider": its mass times crank speed squared at their end."""
+    """Stiffness of all springs; "balance the slider": its mass times crank speed squared, at their end."""
     free_position: Coordinate
     """Coordinate of the slider's pin along its guide at which they are free."""
     cubic: CubicStiffness = 0.0
-    """The force grows by so much times the cube of the elongation."""
+    """Factor of the cube of the elongation in the force."""
     mass: Mass = 0.0
-    """Of all springs together: a third moves with the slider, half of it shakes the frame."""
+    """Mass of all springs: a third moves with the slider, half of it shakes the frame."""
 
 
 class ProcessForceTable(Table):
@@ -59,9 +59,9 @@ class ProcessForceTable(Table):
     table: str | None = None
     """CSV file of crank angle and force."""
     period: Period = None
-    """Crank angle after which that table repeats: one turn unless told."""
+    """Crank angle after which the table repeats; by default one turn."""
     reaction: Reaction = "outside"
-    """What takes the opposite force: "outside", or the "frame" of the machine."""
+    """Body that takes the opposite force: "outside", or the "frame" of the machine."""
 
     @model_validator(mode="after")
     def _one_of_two(self):
@@ -81,45 +81,45 @@ def _coefficient(value):
 
 
 class FrictionTable(Table):
-    """Friction at a joint; its keys tell its kind, which must be that of the joint."""
+    """Friction at a joint; its keys give its kind, which must suit the joint."""
 
     mu: Annotated[float, BeforeValidator(_coefficient), "1"]
     """Coefficient of friction."""
     radius: Length | None = None
-    """Of a pin."""
+    """Radius of a pin."""
     half_length: Length | None = None
-    """Half the length of the shoe in a guide or slot, so that its couple rubs too."""
+    """Half the length of the shoe in a guide or slot, to include friction from its couple."""
     pin_radius: Length | None = None
-    """Of the pin of a cam roller."""
+    """Radius of the pin of a cam roller."""
     roller_radius: Length | None = None
-    """Of a cam roller."""
+    """Radius of a cam roller."""
     rolling_arm: field_of(RollerFriction.RULES.rules["rolling_arm"]) | None = None  # type: ignore[valid-type]
-    """Arm of rolling friction of a cam roller: the cam's force acts by so much ahead of the contact."""
+    """Arm of rolling friction of a cam roller: distance of the cam's force ahead of the contact."""
 
 
 class MechanismVariant(Table):
     """Keys common to every mechanism."""
 
     reference: Name | None = None
-    """Variant that this one is compared with, the case's unless told; one that names itself is compared with none."""
+    """Reference of this variant, by default the case's; a variant that names itself has no reference."""
     crank_speed: Speed
-    """Counter-clockwise; negative turns clockwise."""
+    """Crank speed, positive counter-clockwise."""
     crank_acceleration: AngularAcceleration = 0.0
     """Counter-clockwise."""
     sense: Sense | None = None
-    """Which way a crank at rest is about to turn: 1 counter-clockwise, -1 clockwise."""
+    """Sense in which a crank at rest is about to turn: 1 counter-clockwise, -1 clockwise."""
     crank: LinkTable = LinkTable()
     """Mass properties, from O along the crank."""
     gravity: GravityTable | None = None
-    """Weight; without it there is none. An empty table: 9.81 m/s^2 straight down (standard: 9.80665)."""
+    """Weight, absent without this table. An empty table: 9.81 m/s^2 straight down (standard: 9.80665)."""
     balancing: BalancingTable | None = None
-    """Counterweights to be found."""
+    """Counterweights to compute."""
     drive: DriveTable | None = None
     """Motor and flywheel."""
     loads: Loads = ()
     """A table for each load, under [[common.loads]] or [[variants.NAME.loads]]."""
     friction: dict[str, FrictionTable] = Field(default_factory=dict)
-    """A table for each joint that rubs, by its name: O, A, B, guide, slot, cam; contact of a roller follower."""
+    """A table for each joint with friction, by name: O, A, B, guide, slot, cam; contact of a roller follower."""
 
 
 class RotorTable(LinkTable):
@@ -130,20 +130,20 @@ class RotorTable(LinkTable):
 
 
 class ChainVariant(MechanismVariant):
-    """A crank and whatever groups hang on it."""
+    """A crank and any groups attached to it."""
 
     mechanism: Literal["chain"] = "chain"
-    """A crank and the groups that hang on it."""
+    """A crank and the groups attached to it."""
     name: Name = "chain"
-    """What messages call the mechanism."""
+    """Name of the mechanism in messages."""
     crank_length: Length | None = None
-    """O to A; left out where a cam roller sits on a slotted crank, or a follower on a cam alone."""
+    """Distance O to A; absent for a cam roller on a slotted crank, or with only followers."""
     crank: RotorTable = RotorTable()
     """Mass properties, from O along the crank."""
     bearings: Bearings | None = None  # type: ignore[valid-type]
     """Positions of the left and right main bearing along the crankshaft."""
     groups: Groups
-    """A table for each group, in the order in which motion flows: [[common.groups]]."""
+    """A table for each group, in the order of motion: [[common.groups]]."""
 
 
 class GuideVariant(MechanismVariant):
@@ -154,7 +154,7 @@ class GuideVariant(MechanismVariant):
     guide_offset: Coordinate | None = None
     """Distance of the guide from O, to the left of its direction."""
     guide_through: GuidePoints | None = None
-    """Two points that the guide runs through, in place of angle and offset."""
+    """Two points of the guide, instead of angle and offset."""
     slider: LinkTable = LinkTable()
     """Mass properties of the slider, from B along the guide."""
     spring: SpringTable | None = None
@@ -167,7 +167,7 @@ class SliderVariant(GuideVariant):
     """Keys common to every mechanism that ends in a slider group."""
 
     assembly: SliderAssembly = 1
-    """1: slider ahead of A along the guide, -1: behind; the words go on through change points."""
+    """1: slider ahead of A along the guide, -1: behind; the words pass change points."""
     coupler: LinkTable = LinkTable()
     """Mass properties of the coupler, from A toward B."""
 
@@ -187,7 +187,7 @@ class CamVariant(SliderVariant):
     cam: Cam
     """The path of the roller centre A about O."""
     coupler_length: Length | None = None
-    """A to B; left out for a cosine-law cam, whose mean it then is."""
+    """Distance A to B; by default determined by a cosine-law cam."""
     block: LinkTable = LinkTable()
     """Mass properties of block and roller, from A along the crank."""
     roller: RollerTable | None = None
@@ -204,7 +204,7 @@ class RockerVariant(MechanismVariant):
     rocker_length: Length
     """O2 to B."""
     assembly: RockerAssembly = 1
-    """1: B to the left of the direction from A to O2, -1: right; the words go on through change points."""
+    """1: B to the left of the direction from A to O2, -1: right; the words pass change points."""
     coupler: LinkTable = LinkTable()
     """Mass properties of the coupler, from A toward B."""
     rocker: LinkTable = LinkTable()
@@ -222,7 +222,7 @@ class ChainUnitVariant(RockerVariant):
     mechanism: Literal["chain-unit"]
     """A four-bar with O2 as far below O as the rocker is long."""
     pivot_x: Length | None = None
-    """x of O2; left out, crank and rocker are parallel as the crank points along +y."""
+    """x of O2; by default crank and rocker are parallel when the crank points along +y."""
 
 
 class SlottedLeverVariant(MechanismVariant):
@@ -233,9 +233,9 @@ class SlottedLeverVariant(MechanismVariant):
     lever_pivot: Point
     """O2."""
     slot_offset: Coordinate = 0.0
-    """Of the slot's axis to the left of the pivot."""
+    """Distance of the slot's axis to the left of the pivot."""
     assembly: LeverAssembly = 1
-    """1: the slot points to the block, -1: away from it; the words go on through change points."""
+    """1: the slot points to the block, -1: away from it; the words pass change points."""
     lever: LinkTable = LinkTable()
     """Mass properties of the lever, from O2 along the slot."""
     block: LinkTable = LinkTable()
@@ -248,59 +248,59 @@ class ScotchYokeVariant(GuideVariant):
     crank_length: Length
     """O to A."""
     slot_angle: Angle = YokeGroup.slot_angle
-    """From the guide's direction."""
+    """Angle of the slot from the guide's direction."""
     block: LinkTable = LinkTable()
     """Mass properties of the block, from A along the slot."""
 
 
 class PublishedTable(Table):
-    """Published figures as printed, by the row of the comparison table they belong beside.
+    """Published figures as printed, by row of the comparison table.
 
-    `ratio` holds those of reference / balanced, `value` those of the balanced mechanism; `balancing` those of the
-    balancing table, for every variant and link, taken at a crank-angle step of `sampling`; `linkage` those of the
-    four-bar table, for every variant. `where` names the table or figure that prints them, `note` says how to read them
-    beside ours, `figures` which figure of the source each of ours redraws.
+    `ratio` are ratios reference / balanced, `value` values of the balanced mechanism. `balancing` are figures of the
+    balancing table, for every variant and link, at a crank-angle step of `sampling`. `linkage` are figures of the
+    four-bar table, for every variant. `where` names the printed table or figure, `note` is a remark on the comparison
+    with ours, `figures` maps our figures to those of the source.
     """
 
     ratio: dict[str, str] = Field(default_factory=dict)
-    """Of reference / this variant, by the row of the comparison that they belong beside."""
+    """Ratios reference / this variant, by row of the comparison."""
     value: dict[str, str] = Field(default_factory=dict)
-    """Of the balanced mechanism, by row."""
+    """Values of the balanced mechanism, by row."""
     sampling: Sampling = None
-    """Step of the crank angle at which a study took its largest forces."""
+    """Step of the crank angle in the study's search for largest forces."""
     balancing: dict[str, dict[str, str]] = Field(default_factory=dict)
-    """Of the balancing table: by row, then by variant and link."""
+    """Figures of the balancing table: by row, then by variant and link."""
     linkage: dict[str, dict[str, str]] = Field(default_factory=dict)
-    """Of the four-bar table: by row, then by variant."""
+    """Figures of the four-bar table: by row, then by variant."""
     where: str = ""
     """The table or figure of the source that prints them, "table 1"."""
     note: str = ""
-    """How to read them beside ours."""
+    """Remark on their comparison with ours."""
     figures: dict[str, str] = Field(default_factory=dict)
-    """Which figure of the source each of ours redraws, by the name of ours: torque = "6a"."""
+    """Figure of the source for each of our figures, by name: torque = "6a"."""
 
 
 class CaseTable(Table):
-    """The head of a case file; its variants are read one by one with what they have in common, so are its designs."""
+    """Top level of a case file. Each variant and design inherits [common] and is read separately."""
 
     title: str
-    """Of all that is drawn and printed."""
+    """Title of figures and printed results."""
     source: str = ""
-    """Where the numbers come from."""
+    """Source of the numbers."""
     reference: str
-    """Name of the variant that others are compared with, unless they name one of their own."""
+    """Name of the reference variant of all variants that do not name their own."""
     common: dict = Field(default_factory=dict)
-    """What all variants have in common; a variant may give any of it anew."""
+    """Keys shared by all variants; a variant may override each of them."""
     variants: dict[str, dict] = Field(min_length=1)
-    """By name, a table of what each has of its own: [variants.NAME]."""
+    """Tables of the variants' own keys, by name: [variants.NAME]."""
     published: PublishedTable = PublishedTable()
-    """Published figures, shown beside ours."""
+    """Published figures, shown with ours."""
     tolerances: dict[str, str] = Field(default_factory=dict)
-    """How numbers spread, by path."""
+    """Spread of numbers, by path."""
     design: dict[str, dict] = Field(default_factory=dict)
-    """By name, what is to be found: [design.NAME]."""
+    """Searches, by name: [design.NAME]."""
     sizing: dict[str, dict] = Field(default_factory=dict)
-    """By name, a part that forces size: [sizing.NAME], with its kind and the arguments of its function."""
+    """Parts to be sized, by name: [sizing.NAME], with kind and arguments of the function."""
 
 
 VARIANTS = {

@@ -1,4 +1,4 @@
-"""Commented case files to start from, one for each of some mechanisms; `kinetostatics new` writes them.
+"""Commented starter case files for several mechanisms; `kinetostatics new` writes them.
 
 May import nothing of the package.
 """

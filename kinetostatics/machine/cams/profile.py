@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import HintWarning, ParameterError
 from ...numbers import checks
 from ...numbers.brackets import find_minima
-from ...numbers.formatting import repr_with_units
+from ...numbers.formatting import with_units
 from ...numbers.lazy import cached_property
 from ...numbers.planar import polar_curvature
 from .. import plausibility
@@ -33,6 +33,7 @@ CUT_TOLERANCE = 1e-3
 """Depth to which a roller may cut into another part of the cam, relative to its radius: error of the chain."""
 
 
+@with_units(angle="rad")
 class Peak(NamedTuple):
     """Largest or smallest value over the turn, and its crank angle, rad.
 
@@ -47,8 +48,6 @@ class Peak(NamedTuple):
 
     value: float
     angle: float
-
-    __repr__ = repr_with_units(angle="rad")
 
 
 def sampled_angles(cam):

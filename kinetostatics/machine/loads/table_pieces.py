@@ -1,4 +1,4 @@
-"""Pieces of a table: checks of its rows, look-up, kinks, crossings, and rounding errors of what is read.
+"""Pieces of a table: checks of its rows, look-up, kinks, crossings, and rounding errors of its values.
 
 A table is linear between its rows: piece k gives y_k + (x - x_k) (y_k+1 - y_k) / (x_k+1 - x_k). It has a kink at each
 row, but rows that follow a smooth curve within `KINK_TOLERANCE` count as none. A table over the travel of a slider has
@@ -165,7 +165,7 @@ KINK_TOLERANCE = 1e-5
 SMOOTH_DEGREE = 5
 """Degree of the polynomials that count as smooth: lower than that of the polynomials of reductions over a turn."""
 SMOOTH_STRETCHES = 32
-"""Number of such polynomials in half a turn, or in a table over travel, that make a smooth curve."""
+"""Number of polynomials in half a turn, or in a table over travel, of a smooth curve."""
 CHEBYSHEV_POINTS = chebyshev.chebpts1(32)
 """Places on a stretch, from -1 to 1, at which the polynomial is fitted."""
 CHEBYSHEV_FIT = np.linalg.pinv(chebyshev.chebvander(CHEBYSHEV_POINTS, SMOOTH_DEGREE))
@@ -281,7 +281,7 @@ def turning_points(rate, turns):
 
 
 def _roots(function, low, high):
-    """Angles between `low` and `high`, (designs, K), at which a function of such angles is 0; NaN where they are."""
+    """Angles between `low` and `high`, (designs, K), at which a function of angles is 0; NaN where both are."""
 
     def values(angle, places):
         everywhere = low.copy()

@@ -165,7 +165,7 @@ def _simpler(model, engine, solution, quantity, setting):
     require_one_design(solution)
     simpler = model(setting, solution)
     if simpler is None:
-        raise NotGivenError("the coupler has no mass to divide between its joints")
+        raise NotGivenError("there is no coupler mass to divide between its joints")
     if engine is COMPILED:
         return _report_coarse_motion(compiled_function(simpler, quantity))
     return _report_coarse_motion(lambda: components(replace(simpler), quantity))

@@ -34,7 +34,7 @@ def model_of(solution, quantity):
     require_moving(solution)
     model = Model(solution.mechanism)
     if quantity not in model.readings:
-        raise NotGivenError(f"the constraint equations do not give {quantity}, but {', '.join(model.readings)}")
+        raise NotGivenError(f"the constraint equations give no {quantity}, but {', '.join(model.readings)}")
     return model
 
 
