@@ -254,13 +254,10 @@ def _on_arms(mechanism):
 
 
 def _inertia(bar, link, crank):
-    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass.
-
-    A link that goes on beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
-    """
+    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass."""
     if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None
-    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))
+    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))  # the arm of a wiper goes on beyond its joints
     inertia, unit = link.inertia, link.mass * reach * reach
     if np.any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"
