@@ -260,7 +260,7 @@ def _inertia(bar, link, crank):
     """
     if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None
-    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))
+    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))  # the arm of a wiper goes on beyond its joints
     inertia, unit = link.inertia, link.mass * reach * reach
     if np.any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"

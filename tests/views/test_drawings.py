@@ -424,6 +424,18 @@ def line(ax, label):
     return np.array(found.get_data())
 
 
+def test_cam_of_a_flat_face_is_drawn_with_faces_that_touch_it():
+    law = ks.laws.cosine(0.004, 0.03)
+    ax = ks.plots.cam_profile(ks.FlatFollower(law, ks.Guide.at(np.pi / 2)).disk, angles=(0, 90))
+    faces = [line.get_xydata() for line in ax.lines if len(line.get_xdata()) == 2 and line.get_linestyle() == "-"]
+    assert len(faces) == 2
+    (surface,) = (line.get_xydata() for line in ax.lines if line.get_label() == "working curve")
+    for start, end in faces:
+        normal = np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
+        normal *= np.sign(normal @ start)
+        assert (surface @ normal).max() == pytest.approx(normal @ start, rel=1e-5)
+
+
 @pytest.mark.parametrize("side", ["disk", "ring"])
 def test_a_cam_is_drawn_by_its_curves_and_the_roller(side):
     ax = ks.plots.cam_profile(CAM, 0.015, side, angles=(0, 90), cutter_radius=0.01)
