@@ -12,7 +12,7 @@ from collections import deque
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CHECKED = ("README.md", "docs/*.md")
+CHECKED = ("README.md", "docs/**/*.md", "notebooks/*.ipynb")
 """Trees that have to be clean."""
 MADE = {"_build", "generated"}
 DOCS_COPY = ROOT / "docs" / "notebooks"

@@ -192,7 +192,7 @@ def yoke():
     """Scotch yoke with an inclined slot."""
     machine = ks.Mechanism("yoke", ks.Crank(0.1), (ks.YokeGroup(ks.Guide.at(0.0), slot_angle=np.radians(75)),))
     s = ks.solve(machine, POSE, crank_speed=1.0, loads=[ks.ProcessForce(-500.0)])
-    return apart(s, "slider", (0.0, 0.0), 180, gap=0.55)
+    return apart(s, "slider", (0.0, 0.0), 180, gap=0.8)
 
 
 def cam_roller():
@@ -228,29 +228,30 @@ def signs():
     figure, ax = plt.subplots()
     for way, text in ((np.array([0.4, 0.0]), "x"), (np.array([0.0, 0.16]), "y")):
         ax.annotate("", way, (0, 0), arrowprops={**SHAFT, "color": INK, "lw": 0.8, "mutation_scale": 9})
-        ax.text(*(1.03 * way), text, ha="center", va="center")
+        ax.text(*(1.06 * way), text, ha="center", va="center")
     foot = offset * n
     rail = strokes.hatched_line(foot + 0.1 * u - 0.011 * n, foot + 0.42 * u - 0.011 * n, 0.008)
     ax.plot(*rail, color=INK, lw=0.8, alpha=0.6)
-    ax.plot(*np.stack([foot - 0.03 * u, foot + 0.46 * u], axis=1), color=INK, lw=0.6, ls="-.")
+    ax.plot(*np.stack([foot - 0.03 * u, foot + 0.36 * u], axis=1), color=INK, lw=0.6, ls="-.")
     for start, end in (((0.0, 0.0), a), (a, b)):
         ax.plot(*np.stack([start, end], axis=1), **LINES["bar"])
     ax.fill(*(b[:, None] + _box(u, 0.016)), **PLATES["block"])
     ax.plot(0, 0, marker=PIVOT, ms=18, mfc="0.85", mec=INK, mew=0.8)
-    for point, name, shift in (((0, 0), "O", (-0.018, 0.006)), (a, "A", (-0.012, 0.014)), (b, "B", (-0.022, 0.022))):
+    for point, name, shift in (((0, 0), "O", (-0.018, 0.006)), (a, "A", (-0.012, 0.014)), (b, "B", (-0.004, 0.032))):
         ax.plot(*point, "o", ms=5, mfc="white", mec=INK, zorder=8)
         ax.text(*(np.asarray(point) + shift), name, ha="center", va="center")
     angle_mark(ax, np.zeros(2), 0.055, 0.0, phi, r"$\varphi$", ACCENT, 1.22)
-    angle_mark(ax, np.zeros(2), 0.03, np.radians(110), np.radians(245), r"$M,\ \omega > 0$", LOAD, 2.0)
+    angle_mark(ax, np.zeros(2), 0.03, np.radians(110), np.radians(245), r"$M,\ \omega > 0$", LOAD, 2.4)
     arrow(ax, foot + 0.36 * u, foot + 0.43 * u, "u", INK)
     arrow(ax, foot + 0.36 * u, foot + 0.36 * u + 0.05 * n, "n", INK)
     ax.annotate("", foot, (0, 0), arrowprops={**SHAFT, "color": ACCENT, "lw": 0.9, "mutation_scale": 8})
-    ax.text(*(0.8 * foot + (0.022, 0.002)), "e < 0", color=ACCENT, ha="center", va="center", fontsize="small")
+    ax.text(*(0.5 * foot + (0.026, 0.0)), "e < 0", color=ACCENT, ha="center", va="center", fontsize="small")
     q = (b - a) / np.hypot(*(b - a))
-    arrow(ax, a, a + 0.07 * q, "along")
+    arrow(ax, a, a + 0.07 * q, "")
+    ax.text(*(a + 0.06 * q + 0.018 * strokes.left(q)), "along", color=ACCENT, fontsize="small", ha="center")
     arrow(ax, a, a + 0.045 * strokes.left(q), "across")
-    ax.text(*(foot + 0.47 * u + 0.012 * n), "guide", rotation=12, fontsize="small", va="center")
-    ax.update_datalim([(0.0, 0.17), (-0.1, 0.0)])
+    ax.text(*(foot + 0.2 * u - 0.035 * n), "guide", rotation=12, fontsize="small", ha="center", va="center")
+    ax.update_datalim([(0.0, 0.175), (-0.12, 0.0)])
     ax.set_aspect("equal", adjustable="datalim")
     ax.autoscale_view()
     ax.margins(0.04)

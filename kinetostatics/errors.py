@@ -26,7 +26,7 @@ def _restored(kind, arguments, state):
 
 
 class ParameterError(KinetostaticsError, ValueError):
-    """An input is impossible, such as a negative mass; the message lists every such input.
+    """An input is impossible, such as a negative mass; the message lists all impossible inputs.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ class DesignError(KinetostaticsError, ValueError):
 
 
 class QuantityError(KinetostaticsError, AttributeError, KeyError):
-    """The mechanism has no such joint, link or quantity; the message lists the existing ones.
+    """A joint, link or quantity is unknown; the message lists those of the mechanism.
 
     It is a `KeyError` too, for ``s[name]``, ``s.ground[place]`` and other tables by name.
 

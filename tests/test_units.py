@@ -848,7 +848,7 @@ NO_SPREADS = [
     ((MASS["kg"][0], UNITS.Quantity(2.0, "m")), r"must measure \[mass\], in kg, got 2.0 meter"),
     (UNITS.Quantity(math.nan, "kg"), "must be finite"), (UNITS.Quantity(np.ones((2, 2)), "kg"), "row"),
     (UNITS.Quantity(np.array([]), "kg"), "row"), (UNITS.Quantity(1j, "kg"), "real"),
-    (UNITS.Quantity(1.0, "degC"), "\"°C\" has a zero of its own"),
+    (UNITS.Quantity(1.0, "degC"), "\"°C\" has its own zero point"),
     (FOREIGN.Quantity(1.0, "inch"), "is another in the registry"),
 ]  # fmt: skip
 NO_DISTRIBUTIONS = [

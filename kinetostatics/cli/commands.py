@@ -11,7 +11,6 @@ from pathlib import Path
 
 from ..errors import CaseError, DriveError, ParameterError
 from ..numbers import checks, files
-from ..numbers.formatting import number
 from ..numbers.output_units import shown_units
 from . import output
 from .output import print_columns, print_error, print_folded, print_table, require_writable, variant_words, write_table
@@ -96,7 +95,7 @@ def _extremes(solution, given, shares):
 
     found = {"mechanism": solution.mechanism.name, "power_residual": solution.power_residual}
     means = {"mean_torque [N m]": solution.mean_torque, "mean_power [W]": solution.mean_power}
-    found["drive"] = means | {"energy_per_turn [J]": solution.energy_per_turn}
+    found["drive"] = shown_units().numbers(means | {"energy_per_turn [J]": solution.energy_per_turn})
     rows = {name: row.in_units(shown_units()) for name, row in extremes_by_name(solution).items()}
     found["extremes"] = {
         name: {"label": row.quantity.label, "unit": row.quantity.unit, **dict(zip(SHOWN, row.ends, strict=True))}
@@ -105,7 +104,7 @@ def _extremes(solution, given, shares):
     if lose(solution):
         lost = solution.losses
         powers = {"taken [W]": lost.taken, "lost [W]": lost.total, "efficiency": lost.efficiency}
-        found["losses"] = powers | {"at": output.rows_by_name(lost.frame())}
+        found["losses"] = shown_units().numbers(powers) | {"at": output.rows_by_name(lost.frame())}
     if given:
         largest = output.rows_by_name(largest_with_uncertainty(solution, given))
         found["uncertainty"] = {"inputs": given, "largest": largest}
@@ -149,10 +148,9 @@ def _print_extremes(case, solutions, given, shares, options):
         )
         names = [name.removeprefix("smallest ").removeprefix("largest ") for name in SHOWN]
         print_columns(*heads, *zip(names, ends, errors, strict=True))
-        print_folded(
-            f"\ndrive, exact means over the period: torque {number(solution.mean_torque)} N m, power "
-            f"{number(solution.mean_power)} W; energy per turn {number(solution.energy_per_turn)} J"
-        )
+        drive = (solution.mean_torque, "N m"), (solution.mean_power, "W"), (solution.energy_per_turn, "J")
+        torque, power, energy = (shown_units().text(*each) for each in drive)
+        print_folded(f"\ndrive, exact means over the period: torque {torque}, power {power}; energy per turn {energy}")
         print_folded(
             f"\npower balance: the torques by equilibrium and by powers differ by {solution.power_residual:.1e} of the "
             f"largest power that flows ({options.angles} angles)"

@@ -86,15 +86,15 @@ def _formats(words):
 
 def _csv(table):
     return _option(
-        "--csv", "FILE", f"{table}, as CSV to FILE, or in place of tables without one", _text, nargs="?", const=STDOUT
+        "--csv", "FILE", f"{table}, as CSV to FILE, or without FILE instead of tables", _text, nargs="?", const=STDOUT
     )
 
 
 _angles, _designs = partial(_count, size=checks.BYTES_PER_ANGLE), partial(_count, size=DESIGN)
 CASE = _option("case", "CASE", "a TOML file, or the name of a shipped case: sawframe_2r63", _text)
 VARIANT = _option("--variant", "NAME", "only this variant")
-UNITS = _option("--units", "LIST", 'units of what is shown, "force=kN,length=mm"; SI and degrees else', _units)
-JSON = "--json", {"action": "store_true", "help": "results as JSON in place of tables, numbers in full"}
+UNITS = _option("--units", "LIST", 'units of the output, "force=kN,length=mm"; by default SI and degrees', _units)
+JSON = "--json", {"action": "store_true", "help": "results as JSON instead of tables, numbers in full"}
 COMMANDS: dict[str, tuple[Any, ...]] = {
     "list": (
         ("commands", "list_cases"),
@@ -105,7 +105,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
     "new": (
         ("commands", "new"),
         "write a commented case file to start from",
-        _option("name", "NAME", "of the case: NAME.toml is written, never over another", _text),
+        _option("name", "NAME", "of the case: NAME.toml is written, never over another file", _text),
         ("--kind", {"choices": STARTERS, "default": STARTERS[0], "help": "mechanism (%(default)s)"}),
     ),
     "run": (
@@ -117,15 +117,15 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option(
             "--uncertain",
             "PATH=SIZE",
-            'also how sure the largest values are: standard uncertainty of a number, "crank_length=0.01 mm", or '
-            '"tolerances" for those of the case file; several, each with --uncertain before it',
+            'also the uncertainty of the largest values: that of a number, "crank_length=0.01 mm", or '
+            '"tolerances" for those of the case file; repeat --uncertain for several',
             action="append",
         ),
         _option(
             "--shares",
             "NAME",
-            'also who causes a force or torque, "O": inertia and weight of each link, and each load; several, each '
-            "with --shares before it",
+            'also the shares of a force or torque, "O": inertia and weight of each link, and each load; repeat '
+            "--shares for several",
             action="append",
         ),
         UNITS,
@@ -181,8 +181,8 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         "one page with the moving mechanism, figures and tables",
         CASE,
         _option("--out", "FILE", "page to write, .html", _text, required=True),
-        _option("--variant", "NAME", "only this variant beside the reference"),
-        _option("--pdf", "FILE", "print it to a PDF too, by a browser that is there", _text),
+        _option("--variant", "NAME", "only this variant and the reference"),
+        _option("--pdf", "FILE", "also a PDF, printed by an installed browser", _text),
         UNITS,
     ),
     "precision": (
@@ -211,10 +211,10 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option(
             "--variant",
             "NAME",
-            "whose parameters vary (the first besides the reference of the case)",
+            "variant with the parameters (the first besides the reference of the case)",
         ),
-        _option("--reference", "NAME", "what ratios refer to (the variant's reference)"),
-        _option("--sample", "N", "N designs of a Latin hypercube in place of a grid", _designs),
+        _option("--reference", "NAME", "reference of ratios (the variant's reference)"),
+        _option("--sample", "N", "N designs of a Latin hypercube instead of a grid", _designs),
         _option("--angles", "N", "crank angles over the period, 12 at least (360)", _angles, default=360),
         _option("--workers", "N", "processes (this one, on all its cores)", _count),
         _option("--out", "PATH", "table to write, .csv or .parquet; or a folder to resume from", _text),
@@ -224,19 +224,19 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
     ),
     "design": (
         ("design", "design"),
-        "find the machines that the case asks for: its [design] tables",
+        "find the machines of the [design] tables of the case",
         CASE,
         _option("--design", "NAME", "only these (all)", action="append"),
-        _option("--starts", "N", "searches for each (as the case says)", _count),
-        _option("--out", "FILE", "case file to write with what is found, .toml", _text),
+        _option("--starts", "N", "searches for each (as in the case)", _count),
+        _option("--out", "FILE", "case file to write with the results, .toml", _text),
         _option("--plot", "DIR", "folder for the figures", _text),
         _formats("of the figures (png)"),
         JSON,
-        _csv("what was found, a row for each number"),
+        _csv("the results, a row for each number"),
     ),
     "stability": (
         ("commands", "stability"),
-        "every method's error near the places where it hurts",
+        "every method's error near critical places",
         _option("--out", "DIR", "folder for the CSVs and the chart", _text, required=True),
         JSON,
     ),
@@ -251,21 +251,20 @@ def _epilog(example, *notes):
 
 def parser():
     """The parser; ``options.command`` is module and function of the command, ``options.word`` its name."""
-    styled = {"formatter_class": argparse.RawDescriptionHelpFormatter}
+    style = argparse.RawDescriptionHelpFormatter
     main = argparse.ArgumentParser(
         prog="kinetostatics",
         description="Forces and drive torque of planar mechanisms, from a case file.",
         epilog=_epilog(EXAMPLES["run"], WIDTH_NOTE),
-        **styled,
+        formatter_class=style,
     )
     main.add_argument("--version", action="version", version=f"kinetostatics {__version__}")
     group = main.add_subparsers(required=True, metavar="COMMAND")
     for name, (function, text, *options) in COMMANDS.items():
         formats = " and ".join(option for option, _ in options if option in ("--json", "--csv"))
         epilog = _epilog(EXAMPLES[name], *([f"For other programs: {formats}, numbers in full."] if formats else []))
-        command = group.add_parser(
-            name, help=text, description=f"{text[0].upper()}{text[1:]}.", epilog=epilog, **styled
-        )
+        words = f"{text[0].upper()}{text[1:]}."
+        command = group.add_parser(name, help=text, description=words, epilog=epilog, formatter_class=style)
         command.set_defaults(command=function, word=name)
         for option, settings in options:
             command.add_argument(option, **settings)

@@ -51,8 +51,8 @@ class Comparison:
         """Extrema of the balancing torque of the reference, and the matching ones of the balanced mechanism, N m.
 
         Extrema of one kind (maximum or minimum) are matched one to one, as near in crank angle as possible; NaN where
-        none is left within a third of a turn. The two sides of a jump on a flank, as friction makes at dead centres, do
-        not count.
+        no partner exists within a third of a turn. The two sides of a jump on a flank, as friction causes at dead
+        centres, do not count.
         """
         reference, balanced = self._torque_extrema
         return reference, np.append(balanced.value, np.nan)[_partners(reference, balanced)]
@@ -115,7 +115,7 @@ class Comparison:
         Raises
         ------
         QuantityError
-            Neither has such a link.
+            Neither mechanism has the link.
         """
         links = tuple(dict.fromkeys(name for solution in self._both for name in solution.mechanism.links))
         if problem := checks.choice("inertia_force_range: link", link, links):
@@ -179,7 +179,7 @@ class Comparison:
         return [row for row in rows if not np.isnan(row.pair).all()]
 
     def _torque_rows(self):
-        """Rows of the torque extrema, and of the largest torques if one of them is no such extremum."""
+        """Rows of the torque extrema, and of the largest torques if one of them is not an extremum."""
         reference, matched = self.torque_extremes
         own, other = (
             bounded.errors(TORQUE)[_are_outside_jumps(bounded.found[TORQUE])] for bounded in self._bounded_extremes

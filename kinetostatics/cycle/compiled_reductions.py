@@ -319,7 +319,7 @@ class CompiledReductions:
             Buffer for the values of a block.
         found : tuple
             Written: numbers (outputs, designs); whether the samples are too few for them; the number of angles at which
-            a design does not close; the angle nearest to a limit position, unchanged if none is near.
+            a design does not close; the angle nearest to a limit position, if one is near.
         start, stop : int
         """
         step = len(memory) if self._others else max(1, stop - start)

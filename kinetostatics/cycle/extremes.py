@@ -1,4 +1,4 @@
-"""True extrema of quantities over the period, refined between samples by evaluating the mechanism itself.
+"""Exact extrema of quantities over the period, refined between samples by evaluating the mechanism itself.
 
 `extremes` returns those of one quantity, `extremes_frame` a table of the smallest and largest of all.
 """

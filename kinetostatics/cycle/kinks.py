@@ -1,6 +1,6 @@
 """Crank angles over the period where loads, friction and laws of cams have kinks or jumps, of one design or of many.
 
-Friction has kinks where a rate or force changes its sign, teeth where their force does; `sign_changes` finds them.
+Friction has kinks where a rate or force changes its sign, teeth where their force does (`numbers.sign_changes`).
 Load functions without `kinks` are sampled at the resolution of their scene (`load_functions`); narrower features
 may be missed.
 """
@@ -16,24 +16,19 @@ from ..machine.loads import (
     has_significant_kinks,
     kink_sources,
     kinks_of,
-    pad_rows,
     period_on,
     significant_kinks,
 )
 from ..mechanics.quantities import LOAD_FREE_KINDS, quantity
-from ..numbers.brackets import find_roots
+from ..numbers.sign_changes import sign_changes
 from .load_functions import check_resolution, samples_of_functions, undeclared_functions
 
 SMALL_KINK, MAX_SMALL_KINKS = 1e-9, 200
-"""Least size of a kink relative to its load's largest value, and largest number of such kinks of a load."""
+"""Least size of a kink relative to its load's largest value, and largest number of these kinks of a load."""
 SAMPLES = 720
 """Crank angles of a turn between which a friction rate or force changes its sign at most once."""
 FINE_SAMPLES = 1440
 """The same for one design."""
-SAMPLE_OFFSET = 1e-3
-"""Crank angle of the first sample, rad: no sample is at a dead centre."""
-MAX_VERTEX = 0.1
-"""Height of a parabola's vertex, relative to its second difference, below which the vertex is evaluated too."""
 ANGLE_TOLERANCE = 1e-9
 """Crank angles nearer than this, rad, count as one."""
 
@@ -55,7 +50,7 @@ def design_kinks(solution, tolerance=KINK_TOLERANCE):
     """
     sources, largest_left_out = [law_kinks(solution)[None]], 0.0
     if has_sign_changes(solution):
-        sources.append(_sign_changes_of(solution, SAMPLES)[1])
+        sources.append(_sign_changes_of(solution, SAMPLES))
     for part in kink_sources(solution.loads):
         angles, _, left_out = significant_kinks(part, solution, SMALL_KINK)
         if angles.shape[1] > MAX_SMALL_KINKS:
@@ -81,7 +76,7 @@ def kinks_and_jumps(solution):
         warnings.warn(HintWarning(solution.mechanism.name, text), stacklevel=3)
     if not has_sign_changes(solution):
         return kinks, jumps
-    signs = _sign_changes_of(solution, FINE_SAMPLES)[1].ravel()
+    signs = _sign_changes_of(solution, FINE_SAMPLES).ravel()
     return np.union1d(kinks, signs), np.union1d(jumps, signs)
 
 
@@ -120,85 +115,4 @@ def has_sign_changes(solution):
 
 def _sign_changes_of(solution, samples):
     count = samples * round(solution.period / TURN)
-    return sign_changes(lambda angle: solution.unsolved_at(angle).dynamics.sign_functions, solution.period, count)
-
-
-def sign_changes(function, period, samples):
-    """Index of the function that changes its sign, and the crank angle, both (designs, K); NaN pads the rows.
-
-    Parameters
-    ----------
-    function : function
-        From crank angles (1 or designs, N) to a sequence of arrays that broadcast with them: one for each function.
-    period : float
-    samples : int or array
-        Crank angles over the period, rising, or their number. Between two of them each function changes its sign once
-        at most, or twice where its size has a minimum.
-    """
-
-    def evaluate(angle):
-        with np.errstate(all="ignore"):
-            found = function(angle)
-        return np.stack([np.broadcast_arrays(np.atleast_2d(row), angle)[0] for row in found])
-
-    start = SAMPLE_OFFSET + np.linspace(0.0, period, samples, endpoint=False) if np.ndim(samples) == 0 else samples
-    angle = np.append(start, start[0] + period)[None]
-    found = function(angle)
-    if not len(found):
-        return np.empty((1, 0)), np.empty((1, 0))
-    values = np.stack(np.broadcast_arrays(*(np.atleast_2d(row) for row in found), angle)[:-1])
-    low, high, row = _sign_change_brackets(evaluate, values, angle)
-    if not low.size:
-        return row, low
-    design, place = np.nonzero(~np.isnan(low))
-    lows, highs, rows = (part[design, place] for part in (low, high, row))
-
-    def own(angle, asked):
-        return _values_at(evaluate, len(low), design[asked], rows[asked], angle)
-
-    first, root = own(lows, np.arange(lows.size)), find_roots(own, lows, highs)
-    found = np.full(low.shape, np.nan)
-    found[design, place] = np.mod(np.where(np.isnan(root), np.where(first == 0.0, lows, highs), root), period)
-    return row, found
-
-
-def _values_at(evaluate, designs, design, row, angle):
-    """Values of functions, by their number `row`, of designs at crank angles, all (K,)."""
-    order = np.argsort(design, kind="stable")
-    at, own = pad_rows(design[order], designs, angle[order], row[order])
-    known = ~np.isnan(at)
-    values = evaluate(np.where(known, at, SAMPLE_OFFSET))
-    found = np.empty(angle.size)
-    found[order] = np.take_along_axis(values, np.nan_to_num(own).astype(int)[None], axis=0)[0][known]
-    return found
-
-
-def _sign_change_brackets(evaluate, values, angle):
-    """Crank angles before and after each sign change, and the index of the function, (designs, K).
-
-    `values` are (functions, designs, N). Where the parabola through three samples of one sign has its vertex near zero,
-    the function is also evaluated at the vertex, because it may change its sign twice.
-    """
-    sign = np.signbit(values)
-    row, design, place = np.nonzero((sign[..., :-1] != sign[..., 1:]) & ~np.isnan(np.diff(values)))
-    brackets = [(design, angle[0, place], angle[0, place + 1], row)]
-    before, here, after = (np.abs(part) for part in (values[..., :-2], values[..., 1:-1], values[..., 2:]))
-    alike = (sign[..., :-2] == sign[..., 1:-1]) & (sign[..., 1:-1] == sign[..., 2:])
-    left, right = np.diff(angle[0])[:-1], np.diff(angle[0])[1:]
-    curve = ((after - here) / right - (here - before) / left) / (left + right)
-    slope = (here - before) / left + curve * left
-    with np.errstate(invalid="ignore", divide="ignore"):
-        shift = -0.5 * slope / curve
-        near = alike & (here <= before) & (here <= after) & (curve > 0.0)
-        near &= here + 0.5 * slope * shift < MAX_VERTEX * 0.5 * curve * (left + right) ** 2
-    row, design, place = np.nonzero(near)
-    if place.size:
-        place = place + 1
-        vertex = angle[0, place] + shift[near]
-        own = _values_at(evaluate, values.shape[1], design, row, vertex)
-        beyond = np.signbit(own) != sign[row, design, place]
-        row, design, place, vertex = (part[beyond] for part in (row, design, place, vertex))
-        brackets += [(design, angle[0, place - 1], vertex, row), (design, vertex, angle[0, place + 1], row)]
-    design, low, high, row = (np.concatenate(parts) for parts in zip(*brackets, strict=True))
-    order = np.lexsort((low, row, design))
-    return pad_rows(design[order], values.shape[1], low[order], high[order], row[order])
+    return sign_changes(lambda angle: solution.unsolved_at(angle).dynamics.sign_functions, solution.period, count).angle

@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..machine.loads import TURN, has_no_user_code, kink_sources, pad_rows, period_of
+from ..machine.loads import TURN, has_no_user_code, kink_sources, period_of
 from ..mechanics.load_values import title_of, user_value
 from ..mechanics.quantities import LOAD_FREE_KINDS, quantity
 from ..numbers import checks
+from ..numbers.sign_changes import pad_rows
 from .piecewise import rolled
 
 FUNCTION_STEP = math.radians(0.05)

@@ -1,10 +1,11 @@
 # Public names and where they are: read by type checkers, and by `numbers.lazy` to load each when first used.
 from .cam_contact import Contact as Contact
 from .cam_contact import Peak as Peak
-from .cam_contact import contact as contact
 from .cam_contact import hardness_from_pressure as hardness_from_pressure
 from .cam_contact import pressure_from_hardness as pressure_from_hardness
 from .constraints import SolutionNumber as SolutionNumber
+from .contacts import FollowerContact as FollowerContact
+from .contacts import contact as contact
 from .follower_speed import Surge as Surge
 from .follower_speed import lift_off_speed as lift_off_speed
 from .follower_speed import lifted as lifted

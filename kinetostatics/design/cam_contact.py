@@ -6,25 +6,24 @@ friction of its pin. Forces in N, pressures in Pa (Hertz, line contact); hardnes
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from ..cycle.limit_positions import require_single
 from ..cycle.load_functions import resolution_note
 from ..cycle.means import TERM_ROUNDING, closed_turn, means
 from ..errors import ParameterError
 from ..machine.cams import roller
 from ..machine.cams.profile import POSITIVE, Peak, curvature, highest, surface_curvature
 from ..machine.cams.profile import profile as working_curve
-from ..machine.cams.roller import MODULUS_RULE
 from ..machine.loads import Gravity
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.lazy import cached_property
 from .follower_speed import force_changes, lift_off_speed, peak_of, starting_torque
 
 
+@with_units(angle="rad", spin="rad/s", energy="J", rise="N/rad")
 class Reversal(NamedTuple):
     """The roller changes sides: crank angle, rad; change of its spin, rad/s; energy lost in sliding, J.
 
@@ -35,8 +34,6 @@ class Reversal(NamedTuple):
     spin: float
     energy: float
     rise: float
-
-    __repr__ = repr_with_units(angle="rad", spin="rad/s", energy="J", rise="N/rad")
 
     def sliding_angle(self, roller, crank_speed, friction_coefficient):
         """Crank angle through which the roller slides until it rolls again, rad, as the force grows in proportion."""
@@ -236,7 +233,162 @@ LIMIT_UNITS = {name: of[-2] for name, of in (*UPPER_LIMITS.items(), *LOWER_LIMIT
 
 
 @dataclass(frozen=True, eq=False)
-class Contact:
+class CamContact:
+    """Line contact of a cam over the turn: base of `Contact` and `FollowerContact`.
+
+    A subclass gives `cam_force`, `curvature` of the pitch curve, `force_name` and `largest_pressure_angle`.
+    """
+
+    solution: Any = field(repr=False)
+    cam: Any
+    roller_radius: float
+    width: float
+    modulus: float
+    limits: dict[str, float] = field(repr=False, default_factory=dict, kw_only=True)
+
+    def __repr__(self):
+        peak = self.largest_pressure
+        lines = [
+            f"<{type(self).__name__}: {self.solution.mechanism.name}, {self._body}",
+            f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
+            f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
+            *(f"  exceeded         {text}" for text in self.exceeded),
+        ]
+        if self.force_error is not None:
+            lines.append(f"  uncertain        forces by {self.force_error:.2g} of the largest")
+        return "\n  ".join(filter(None, ["\n".join(lines), resolution_note(self.solution)])) + ">"
+
+    @property
+    def _body(self):
+        """Words for what the cam presses on."""
+        return f"roller radius {self.roller_radius:.6g} m"
+
+    @property
+    def force_error(self):
+        """Expected largest error of forces, relative to the largest, of a cam from a table; None of others."""
+        return getattr(self.cam, "force_error", None)
+
+    cam_force: ClassVar[Any]
+    curvature: ClassVar[Any]
+    force_name: ClassVar[Any]
+    largest_pressure_angle: ClassVar[Any]
+
+    # over the crank angle
+
+    @property
+    def crank_angle(self):
+        """Crank angles of the solution, rad."""
+        return self.solution.crank_angle
+
+    @property
+    def side(self):
+        """Which side of the cam carries the roller, at each crank angle: "ring" outside it or "disk" inside."""
+        return np.where(self._side > 0.0, "ring", "disk")
+
+    @property
+    def _side(self):
+        """Side of the pitch curve on which the cam lies: +1 around it (ring), -1 inside (disk)."""
+        return np.where(self.cam_force > 0.0, 1.0, -1.0)
+
+    @property
+    def curvature_radius(self):
+        """Radius of the working curve that carries the roller, m: positive where convex, negative where hollow."""
+        with np.errstate(divide="ignore"):
+            return 1.0 / surface_curvature(self.curvature, self.roller_radius, self._side)
+
+    @property
+    def relative_radius(self):
+        """Radius of the equivalent cylinder on a plane, m."""
+        return roller.relative_radius(self.curvature, self.roller_radius, self._side)
+
+    @property
+    def pressure(self):
+        """Largest Hertz pressure in the contact, Pa."""
+        return roller.pressure(self.cam_force, self.width, self.modulus, self.relative_radius)
+
+    @property
+    def half_width(self):
+        """Half the width of the contact, m."""
+        return roller.half_width(self.cam_force, self.width, self.modulus, self.relative_radius)
+
+    # over the period
+
+    @cached_property
+    def largest_pressure(self):
+        """Largest Hertz pressure over the period, Pa, and where, between the crank angles given too."""
+        return self._highest(lambda at: at.pressure)
+
+    @cached_property
+    def changes(self):
+        """Crank angles at which the force of the cam changes its sign, so that a roller changes sides, rad."""
+        return tuple(force_changes(self.solution, self.force_name).tolist())
+
+    @property
+    def sides(self):
+        """Sides that carry the roller somewhere in the period."""
+        return ("disk", "ring") if self.changes else (str(replace(self, solution=self.solution.at([0.0])).side[0]),)
+
+    @cached_property
+    def lift_off_speed(self):
+        """Crank speed at which contact with the side that carries at rest is lost, rad/s; 0 if both carry at rest."""
+        return lift_off_speed(self.solution, self.force_name)
+
+    @cached_property
+    def starting_torque(self):
+        """Largest torque that turns the crank from rest, N m, and where."""
+        return starting_torque(self.solution)
+
+    @property
+    def hardness(self):
+        """Brinell hardness of through-hardened steel that bears the largest pressure 1e7 times (AGMA 2001-D04)."""
+        return hardness_from_pressure(self.largest_pressure.value)
+
+    def _highest(self, function):
+        """Largest value over the period of a function of the contact, a `Peak`."""
+        return peak_of(self.solution, lambda at: function(replace(self, solution=at)))
+
+    # limits
+
+    @cached_property
+    def exceeded(self):
+        """Sentences about exceeded limits, with both numbers and the crank angle."""
+        found = []
+        for name, (peak, unit, words) in UPPER_LIMITS.items():
+            if name in self.limits and (found_peak := getattr(self, peak)).value > self.limits[name]:
+                found.append(
+                    f"{words}: {found_peak.value:.6g} {unit} at {np.degrees(found_peak.angle):.6g} deg, more than "
+                    f"{self.limits[name]:.6g}"
+                )
+        found += self._curve_limits_exceeded()
+        for name, (unit, words) in LOWER_LIMITS.items():
+            if name in self.limits and (value := getattr(self, name)) < self.limits[name]:
+                found.append(f"{words}: {value:.6g} {unit}, less than {self.limits[name]:.6g}")
+        return tuple(found)
+
+    def _curve_limits_exceeded(self):
+        """Sentences about exceeded limits of pressure angle and curvature."""
+        made = {side: working_curve(self.cam, self.roller_radius, 8, side) for side in self.sides}
+        given = {name: self.limits.get(name) for name in CURVE_LIMIT_UNITS}
+        return [f"{side}: {text}" for side, curve in made.items() for text in curve.exceeded(**given)]
+
+    def frame(self):
+        """Table with a row for each crank angle, a pandas DataFrame."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "crank_angle [deg]": np.degrees(self.crank_angle),
+                f"{self.force_name} [N]": self.solution.scalar(self.force_name),
+                "side": self.side,
+                "curvature_radius [m]": self.curvature_radius,
+                "pressure [Pa]": self.pressure,
+                "half_width [m]": self.half_width,
+            }
+        )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Contact(CamContact):
     """The roller on its cam over the turn; made by `contact`.
 
     Attributes
@@ -261,37 +413,9 @@ class Contact:
     (('disk', 'ring'), array([532.4,  25.1, 523.9,  25.1]))
     """
 
-    solution: Any = field(repr=False)
-    cam: Any
-    roller_radius: float
-    width: float
-    modulus: float
-    roller: Roller = field(repr=False)
-    limits: dict[str, float] = field(repr=False, default_factory=dict)
+    roller: Roller = field(kw_only=True)
 
-    def __repr__(self):
-        peak = self.largest_pressure
-        lines = [
-            f"<Contact: {self.solution.mechanism.name}, roller radius {self.roller_radius:.6g} m",
-            f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
-            f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
-            *(f"  exceeded         {text}" for text in self.exceeded),
-        ]
-        if self.force_error is not None:
-            lines.append(f"  uncertain        forces by {self.force_error:.2g} of the largest")
-        return "\n  ".join(filter(None, ["\n".join(lines), resolution_note(self.solution)])) + ">"
-
-    @property
-    def force_error(self):
-        """Expected largest error of forces, relative to the largest, of a cam from a table; None of others."""
-        return getattr(self.cam, "force_error", None)
-
-    # over the crank angle
-
-    @property
-    def crank_angle(self):
-        """Crank angles of the solution, rad."""
-        return self.solution.crank_angle
+    force_name = "cam_force"
 
     @property
     def cam_force(self):
@@ -299,47 +423,14 @@ class Contact:
         return self.solution.cam_force
 
     @property
-    def side(self):
-        """Which side of the cam carries the roller, at each crank angle: "ring" outside it or "disk" inside."""
-        return np.where(self.cam_force > 0.0, "ring", "disk")
-
-    @property
-    def curvature_radius(self):
-        """Radius of the working curve that carries the roller, m: positive where convex, negative where hollow."""
-        bend = surface_curvature(self._bend, self.roller_radius, _side_of(self.cam_force))
-        with np.errstate(divide="ignore"):
-            return 1.0 / bend
-
-    @property
-    def relative_radius(self):
-        """Radius of the equivalent cylinder on a plane, m."""
-        return roller.relative_radius(self._bend, self.roller_radius, _side_of(self.cam_force))
-
-    @property
-    def pressure(self):
-        """Largest Hertz pressure in the contact, Pa."""
-        return roller.pressure(self.cam_force, self.width, self.modulus, self.relative_radius)
-
-    @property
-    def half_width(self):
-        """Half the width of the contact, m."""
-        return roller.half_width(self.cam_force, self.width, self.modulus, self.relative_radius)
-
-    @property
-    def _bend(self):
+    def curvature(self):
+        """Curvature of the pitch curve, 1/m, positive where it is convex seen from outside."""
         return curvature(self.cam, self.crank_angle)
-
-    # over the period
-
-    @cached_property
-    def largest_pressure(self):
-        """Largest Hertz pressure over the period, Pa, and where, between the crank angles given too."""
-        return self._highest(lambda at: replace(self, solution=at).pressure)
 
     @cached_property
     def largest_pin_load(self):
         """Largest load of the roller's pin, N, and where."""
-        return self._highest(self.roller.pin_load)
+        return peak_of(self.solution, self.roller.pin_load)
 
     @cached_property
     def largest_pressure_angle(self):
@@ -351,17 +442,7 @@ class Contact:
         """Largest friction coefficient that rolling needs, and where; infinite at a change of sides."""
         if self.changes:
             return Peak(np.inf, self.changes[0])
-        return self._highest(self.roller.friction_coefficient)
-
-    @cached_property
-    def changes(self):
-        """Crank angles at which the roller changes sides, rad."""
-        return tuple(force_changes(self.solution, "cam_force").tolist())
-
-    @property
-    def sides(self):
-        """Sides that carry the roller somewhere in the period."""
-        return ("disk", "ring") if self.changes else (str(replace(self, solution=self.solution.at([0.0])).side[0]),)
+        return peak_of(self.solution, self.roller.friction_coefficient)
 
     @cached_property
     def life(self):
@@ -378,196 +459,16 @@ class Contact:
         """A `Reversal` for each change of sides."""
         return tuple(self.roller.reversal(self.solution, angle) for angle in self.changes)
 
-    @cached_property
-    def lift_off_speed(self):
-        """Crank speed at which the roller leaves its side at rest, rad/s; 0 if both sides carry it at rest."""
-        return lift_off_speed(self.solution)
-
-    @cached_property
-    def starting_torque(self):
-        """Largest torque that turns the crank from rest, N m, and where."""
-        return starting_torque(self.solution)
-
-    @property
-    def hardness(self):
-        """Brinell hardness of through-hardened steel that bears the largest pressure 1e7 times (AGMA 2001-D04)."""
-        return hardness_from_pressure(self.largest_pressure.value)
-
-    def _highest(self, function):
-        return peak_of(self.solution, function)
-
-    # limits
-
-    @cached_property
-    def exceeded(self):
-        """Sentences about exceeded limits, with both numbers and the crank angle."""
-        found = []
-        for name, (peak, unit, words) in UPPER_LIMITS.items():
-            if name in self.limits and (found_peak := getattr(self, peak)).value > self.limits[name]:
-                found.append(
-                    f"{words}: {found_peak.value:.6g} {unit} at {np.degrees(found_peak.angle):.6g} deg, more than "
-                    f"{self.limits[name]:.6g}"
-                )
-        for side in self.sides:
-            made = working_curve(self.cam, self.roller_radius, 8, side)
-            given = {name: self.limits.get(name) for name in CURVE_LIMIT_UNITS}
-            found += [f"{side}: {text}" for text in made.exceeded(**given)]
-        for name, (unit, words) in LOWER_LIMITS.items():
-            if name in self.limits and (value := getattr(self, name)) < self.limits[name]:
-                found.append(f"{words}: {value:.6g} {unit}, less than {self.limits[name]:.6g}")
-        return tuple(found)
-
     def frame(self):
         """Table with a row for each crank angle, a pandas DataFrame."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            {
-                "crank_angle [deg]": np.degrees(self.crank_angle),
-                "cam_force [N]": self.cam_force,
-                "side": self.side,
-                "curvature_radius [m]": self.curvature_radius,
-                "pressure [Pa]": self.pressure,
-                "half_width [m]": self.half_width,
-                "pin_load [N]": self.roller.pin_load(self.solution),
-                "roller_spin [rad/s]": self.roller.spin(self.solution),
-                "friction_coefficient [1]": self.roller.friction_coefficient(self.solution),
-            }
+        return (
+            super()
+            .frame()
+            .assign(
+                **{
+                    "pin_load [N]": self.roller.pin_load(self.solution),
+                    "roller_spin [rad/s]": self.roller.spin(self.solution),
+                    "friction_coefficient [1]": self.roller.friction_coefficient(self.solution),
+                }
+            )
         )
-
-
-def _side_of(force):
-    """Side of the pitch curve of a cam with this force: +1 around it (ring), -1 inside (disk)."""
-    return np.where(force > 0.0, 1.0, -1.0)
-
-
-PARTS = ("roller", "cam")
-ROLLER_RULES: dict[str, tuple[str, dict[str, Any]]] = {
-    "roller_mass": ("kg", {"low": 0.0}),
-    "life_exponent": ("1", POSITIVE),
-    "roller_inertia": ("kg*m**2", {"low": 0.0}),
-    "load_rating": ("N", POSITIVE),
-}
-MATERIAL_RULES: dict[str, tuple[str, dict[str, Any]]] = {
-    "youngs_modulus": ("Pa", {**POSITIVE, "usual": MODULUS_RULE.usual}),
-    "poissons_ratio": ("1", {"low": 0.0, "high": 0.5 + 1e-12}),
-}
-"""Unit and bounds of each material property."""
-
-
-def contact(
-    solution,
-    roller_radius=None,
-    width=None,
-    youngs_modulus=None,
-    poissons_ratio=None,
-    *,
-    roller_mass=0.0,
-    roller_inertia=None,
-    load_rating=None,
-    life_exponent=10 / 3,
-    limits=None,
-):
-    """Contact of the roller with its cam over the turn, and exceeded limits.
-
-    Parameters
-    ----------
-    solution : Solution
-        Of one design, of a mechanism with a `CamRoller`.
-    roller_radius, width : float
-        m; of these four, missing ones come from the scene's own `Roller`.
-    youngs_modulus : float or (roller, cam)
-        Pa.
-    poissons_ratio : float or (roller, cam)
-    roller_mass : float
-        Mass of the roller, a part of the block's mass, kg.
-    roller_inertia : float, optional
-        About its pin, kg m2; default m R^2 / 2.
-    load_rating : float, optional
-        Basic dynamic load rating C of its bearing (ISO 281), N.
-    life_exponent : float
-        10/3 for roller bearings, 3 for ball bearings.
-    limits : dict of str to float, optional
-        Largest "pressure" (Pa), "pin_load" (N), "friction_coefficient", "pressure_angle" (rad) and "starting_torque"
-        (N m); smallest convex "curvature_radius" (m), "life" (h) and "lift_off_speed" (rad/s); see `Contact.exceeded`.
-
-    Returns
-    -------
-    Contact
-
-    Raises
-    ------
-    ParameterError
-        A value no machine can have, no cam in the mechanism, a batch of designs, or a roller that undercuts the side of
-        the cam that it runs on.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> cam = ks.cams.CosineLaw(0.3, 2.0)
-    >>> saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0))
-    >>> solution = ks.solve(saw, 0.5, crank_speed=10.0, loads=ks.Spring.balancing(600.0, 11.0, 2.0))
-    >>> found = ks.design.contact(solution, 0.05, 0.04, 210e9, 0.3, limits={"pressure": 1e9})
-    >>> print(f"{found.largest_pressure.value / 1e6:.1f} MPa on the {found.sides[0]}")
-    289.1 MPa on the disk
-    """
-    checks.require("contact", checks.solution("solution", solution))
-    require_single(solution, "contact", "cam_force")
-    groups = solution.mechanism.led_by_ground
-    given = {"roller_radius": roller_radius, "width": width, "youngs_modulus": youngs_modulus}
-    given |= {"poissons_ratio": poissons_ratio}
-    limits = {} if limits is None else limits
-    known = limits if isinstance(limits, dict) else {}
-    own = {"roller_mass": roller_mass, "life_exponent": life_exponent}
-    optional = {"roller_inertia": roller_inertia, "load_rating": load_rating}
-    own |= {name: value for name, value in optional.items() if value is not None}
-    no_roller = f"solution must be of a mechanism with a CamRoller, a {solution.mechanism.name} has none"
-    if any(group.led for group in solution.mechanism.groups):
-        no_roller += "; give its follower a Roller or Face, then contact_pressure is an output"
-    values = checks.single_numbers(
-        "contact",
-        None if groups else no_roller,
-        *_limit_problems(limits, load_rating),
-        **_contact_rules(given, groups),
-        **{name: (value, *ROLLER_RULES[name]) for name, value in own.items()},
-        **{f"limit {name!r}": (known[name], unit, POSITIVE) for name, unit in LIMIT_UNITS.items() if name in known},
-    )
-    cam, radius, mass = groups[0].cam, values["roller_radius"], values["roller_mass"]
-    inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
-    wheel = Roller(cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    materials = [[values[f"{name} of the {part}"] for name in MATERIAL_RULES] for part in PARTS]
-    kept = {name: values[f"limit {name!r}"] for name in LIMIT_UNITS if name in limits}
-    found = Contact(solution, cam, radius, values["width"], roller.contact_modulus(*materials), wheel, kept)
-    for side in found.sides:
-        working_curve(cam, radius, 8, side)
-    return found
-
-
-def _contact_rules(given, groups):
-    """Values and rules of a contact, missing values from the scene's roller; the material of roller and cam each."""
-    lacking = [name for name, value in given.items() if value is None] if groups else []
-    found, scene_roller = dict(given), groups[0].roller if groups else None
-    if lacking and scene_roller is None:
-        raise ParameterError(f"contact: {', '.join(lacking)} must be told, as the scene's CamRoller has no Roller")
-    for name in lacking:
-        field_name = name.removeprefix("roller_")
-        own, other = getattr(scene_roller, field_name), getattr(scene_roller, f"cam_{field_name}", None)
-        found[name] = own if other is None else (own, other)
-    rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
-        name: (found[name], "m", POSITIVE) for name in ("roller_radius", "width")
-    }
-    for place, part in enumerate(PARTS):
-        for name, rule in MATERIAL_RULES.items():
-            value = found[name]
-            paired = isinstance(value, list | tuple) and len(value) == 2
-            rules[f"{name} of the {part}"] = (value[place] if paired else value, *rule)
-    return rules
-
-
-def _limit_problems(limits, load_rating):
-    """Sentences about wrong names of limits."""
-    if not isinstance(limits, dict):
-        return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
-    rating = "a limit of the life takes the load_rating of the roller's bearing"
-    unrated = "life" in limits and load_rating is None
-    return [*(checks.choice("limit", name, tuple(LIMIT_UNITS)) for name in limits), rating if unrated else None]

@@ -14,7 +14,7 @@ from ..machine.mechanism import Mechanism
 from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..solution.scene import solve
 from .linkage import crank_sliders
 
@@ -125,6 +125,7 @@ class Counterweight:
                 yield f"{link}: the counterweight needs {found:.6g} {unit}, {words} {limit:g} {unit}"
 
 
+@with_units(counterweights="kg, m", in_planes="m, kg, m")
 @dataclass(frozen=True, eq=False)
 class Balanced:
     """A mechanism with counterweights.
@@ -155,8 +156,6 @@ class Balanced:
     mechanism: Mechanism = field(repr=False)
     counterweights: dict = field(default_factory=dict)
     in_planes: tuple = ()
-
-    __repr__ = repr_with_units(counterweights="kg, m", in_planes="m, kg, m")
 
     @property
     def ratio(self):

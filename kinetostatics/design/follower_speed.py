@@ -6,14 +6,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..cycle.extremes import extrema, largest_of
-from ..cycle.kinks import sign_changes
 from ..cycle.limit_positions import require_single
 from ..cycle.piecewise import Pieces, edges_between, rule
 from ..errors import ParameterError
 from ..machine.cams.profile import PEAK_SAMPLES, POSITIVE, Peak
 from ..machine.loads import TURN, Spring, surge
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
+from ..numbers.sign_changes import sign_changes
 from ..solution.scene import Scene
 
 REST_SPEED_RATIO = 1e-6
@@ -28,6 +28,7 @@ HARMONICS, SURGE_POINTS = 360, 16
 """Harmonics of the spring's end, and crank angles in two periods of the highest one."""
 
 
+@with_units(natural_frequency="rad/s", amplitudes="m")
 class Surge(NamedTuple):
     """First natural oscillation of a spring between its ends, and the harmonics of its end.
 
@@ -54,8 +55,6 @@ class Surge(NamedTuple):
     natural_frequency: float
     order: float
     amplitudes: np.ndarray
-
-    __repr__ = repr_with_units(natural_frequency="rad/s", amplitudes="m")
 
     @property
     def excitation(self):
@@ -186,7 +185,7 @@ def force_changes(solution, force):
     def values(angle):
         return [solution.at(angle).scalar(force) + 0.0]  # -0.0 has a sign
 
-    return np.sort(sign_changes(values, solution.period, _angles(solution))[1][0])
+    return np.sort(sign_changes(values, solution.period, _angles(solution)).angle[0])
 
 
 def starting_torque(solution):

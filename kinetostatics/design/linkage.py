@@ -16,7 +16,8 @@ from ..errors import ParameterError
 from ..machine.builders import four_bar
 from ..machine.group import FRAME, Bar
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.arithmetic import TURN
+from ..numbers.formatting import with_units
 from ..numbers.planar import cross, dot
 
 
@@ -64,6 +65,7 @@ CHANGE_POINT_TOLERANCE = 1e-12
 """Difference of the two sums of lengths, relative to them, below which a four-bar has a change point."""
 
 
+@with_units(intervals="rad")
 @dataclass(frozen=True)
 class Grashof:
     """Class of a four-bar by Grashof's rule.
@@ -88,8 +90,6 @@ class Grashof:
     kind: str
     turning_joints: tuple[str, ...]
     intervals: tuple[tuple[float, float], ...]
-
-    __repr__ = repr_with_units(intervals="rad")
 
 
 KIND_BY_SHORTEST = {
@@ -213,7 +213,7 @@ CHAIN_UNIT_RULES = {
     "pivot_x": checks.Optional(checks.Number("m")),
 }
 ANGLE_RULE, START_RULE = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
-QUARTER, TURN, FULL_TURN = pi / 2, 2 * pi, ((0.0, 2 * pi),)
+QUARTER, FULL_TURN = pi / 2, ((0.0, TURN),)
 ROCKER_ANGLES = 720
 """Crank angles per turn that make the rocker angle continuous."""
 
@@ -366,6 +366,7 @@ def transmission_angle(solution):
     return np.arctan2(abs(cross(coupler, rocker)), dot(coupler, rocker))
 
 
+@with_units(largest="rad", smallest="rad", largest_at="rad", smallest_at="rad")
 @dataclass(frozen=True)
 class Swing:
     """Swing of the rocker over a turn, clockwise from its start.
@@ -390,8 +391,6 @@ class Swing:
     smallest: float
     largest_at: float
     smallest_at: float
-
-    __repr__ = repr_with_units(largest="rad", smallest="rad", largest_at="rad", smallest_at="rad")
 
     @property
     def range(self):
@@ -485,7 +484,7 @@ def characteristics(solutions, reference):
     Raises
     ------
     ParameterError
-        The reference is unknown, or a solution is not of such a four-bar with a turning crank.
+        The reference is unknown, or a solution is not of a four-bar with a turning crank and swinging rocker.
 
     Examples
     --------

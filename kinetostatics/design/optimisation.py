@@ -243,8 +243,8 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
     # limits by tables over travel are added; for a robust goal they hold for each machine of the spread
     own = (*problem.table_limits, *(goal.output.within_tables() if robust is not None else ()))
     kept = (*limits, *own)
-    with progress_bar(problem, progress):
-        ends = [search_from(problem, searched, (*plain, *own), start) for start in begins]
+    with progress_bar(problem, begins, progress) as numbered:
+        ends = [search_from(problem, searched, (*plain, *own), start) for start in numbered]
         best = reduce(better, ends)
         if best.missed > MISSED:
             raise DesignError(_failure_text(problem, searched, kept, best, len(ends)), problem.numbers(best.values))

@@ -7,13 +7,14 @@ import numpy as np
 
 from ..errors import DesignError
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from .constraints import MEAN, Constraint, limit_list, parse_output
 from .duties import in_each, mean_value, read_duties
 from .optimisation import ANGLES, named_numbers, optimise
 from .problem import scene_of
 
 
+@with_units()
 @dataclass(frozen=True, eq=False)
 class Front:
     """Designs none of which is better in both outputs; `pareto` and `balancing.pareto` return it.
@@ -45,8 +46,6 @@ class Front:
     table: object = field(repr=False)
     designs: tuple[Any, ...] = field(repr=False)
     before: tuple[float, float]
-
-    __repr__ = repr_with_units()
 
 
 def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, reference=None, seed=0, starts=1, **options):

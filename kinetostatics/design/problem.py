@@ -79,13 +79,20 @@ BAR_DELAY = 1.0
 
 
 @contextmanager
-def progress_bar(problem, wanted=True, label=None):
-    """Context in which steps of a search move a bar."""
+def progress_bar(problem, begins, wanted):
+    """Context in which steps of the searches move a bar; it yields where they begin, which numbers them on the bar."""
     from tqdm import tqdm
 
-    with tqdm(desc=label, unit=" steps", delay=BAR_DELAY, leave=False, disable=not wanted) as bar:
+    words = "search {} of " + str(len(begins))
+    with tqdm(desc=words.format(1), unit=" steps", delay=BAR_DELAY, leave=False, disable=not wanted) as bar:
+
+        def numbered():
+            for number, begin in enumerate(begins, 1):
+                bar.set_description_str(words.format(number), refresh=False)
+                yield begin
+
         problem.stepped = lambda *_: bar.update()
-        yield
+        yield numbered()
     problem.stepped = None
 
 

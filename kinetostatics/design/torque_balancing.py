@@ -21,6 +21,7 @@ from ..machine.laws.law import PanelLaw, turn_angles
 from ..machine.links import Link
 from ..machine.loads import Gravity, Spring
 from ..numbers import checks
+from ..numbers.arithmetic import TURN
 from ..numbers.lazy import cached_property
 from ..numbers.panels import Panels
 from ..numbers.planar import dot
@@ -201,7 +202,7 @@ def _torque_means(solution):
     return float(mean), float(uneven)
 
 
-OWNER, TURN = "torque_balancing_cam", 2 * np.pi
+OWNER = "torque_balancing_cam"
 UNEVENNESS_TOLERANCE = 1e-10
 """Negligible unevenness, relative to the largest term of the torque."""
 JUMP_TOLERANCE = 1e-6

@@ -13,7 +13,7 @@ from ..errors import QuantityError
 from ..machine.friction import NO_FRICTION
 from ..mechanics.load_values import numbered_titles
 from ..numbers import checks
-from ..numbers.formatting import number, repr_with_units
+from ..numbers.formatting import number, with_units
 from ..numbers.parameter_tree import replace_unchecked
 
 ROTOR, FLYWHEEL, LINKS = "rotor, by slip", "flywheel and rotor", "links"
@@ -22,6 +22,7 @@ ENERGY_TOLERANCE = 1e-13
 """Negligible energy, relative to the energy exchanged."""
 
 
+@with_units(energy="J", swing="J")
 @dataclass(frozen=True)
 class Part:
     """A part that supplies, takes or stores energy.
@@ -42,8 +43,6 @@ class Part:
     kind: str
     energy: float
     swing: float = np.nan
-
-    __repr__ = repr_with_units(energy="J", swing="J")
 
 
 @dataclass(frozen=True)

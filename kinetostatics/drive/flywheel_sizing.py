@@ -8,13 +8,14 @@ import numpy as np
 
 from ..cycle.load_functions import resolution_note
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from .one_dof import DrivenMachine
 from .resolution import resolve_and_hint
 from .running import Running, find_flywheel, parse_fluctuation
 from .steady_running import steady
 
 
+@with_units(inertia="kg m2", energy="J")
 @dataclass(frozen=True, eq=False)
 class Flywheel:
     """Size of a flywheel on the crank; `flywheel` returns it.
@@ -22,7 +23,7 @@ class Flywheel:
     Attributes
     ----------
     inertia : float
-        Moment of inertia on the crank besides links and motor, kg m2; 0 if none is needed.
+        Moment of inertia on the crank besides links and motor, kg m2; 0 if it needs no flywheel.
     energy : float
         Fluctuation of energy over the turn, J. Without motor: between the extremes of the turning-moment diagram. With
         a motor: of the flywheel itself.
@@ -47,8 +48,6 @@ class Flywheel:
     fluctuation: float
     running: Running | None = field(default=None, repr=False)
     note: str = field(default="", repr=False)
-
-    __repr__ = repr_with_units(inertia="kg m2", energy="J")
 
 
 def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.lazy import cached_property
 
 MAX_SPEED_RATIO = 2.0
@@ -64,7 +64,7 @@ class Motor:
         Raises
         ------
         ParameterError
-            A value is impossible; the message lists all such values.
+            A value is impossible; the message lists all impossible values.
 
         Examples
         --------
@@ -205,6 +205,7 @@ class Motor:
         return self.transmission**2 * self.slope(self.transmission * crank_speed)
 
 
+@with_units(power="W", speed="rad/s", synchronous_speed="rad/s", transmission="1", inertia="kg m2")
 @dataclass(frozen=True, eq=False)
 class Kloss(Motor):
     """Induction motor; see `Motor.kloss`."""
@@ -213,8 +214,6 @@ class Kloss(Motor):
     speed: float
     synchronous_speed: float
     overload: float
-
-    __repr__ = repr_with_units(power="W", speed="rad/s", synchronous_speed="rad/s", transmission="1", inertia="kg m2")
 
     @cached_property
     def breakdown_torque(self):
@@ -246,14 +245,13 @@ class Kloss(Motor):
         return MAX_SPEED_RATIO * self.synchronous_speed
 
 
+@with_units(standstill_torque="N m", idle_speed="rad/s", inertia="kg m2")
 @dataclass(frozen=True, eq=False)
 class Linear(Motor):
     """Motor with a straight line of torque, level where the idle speed is infinite; see `Motor.linear`, `constant`."""
 
     standstill_torque: float
     idle_speed: float
-
-    __repr__ = repr_with_units(standstill_torque="N m", idle_speed="rad/s", inertia="kg m2")
 
     def torque(self, speed):
         return self.standstill_torque * (1.0 - speed / self.idle_speed)
@@ -266,14 +264,13 @@ class Linear(Motor):
         return MAX_SPEED_RATIO * self.idle_speed
 
 
+@with_units(speeds="rad/s", torques="N m", inertia="kg m2")
 @dataclass(frozen=True, eq=False)
 class TableMotor(Motor):
     """Motor by a table; see `Motor.table`. Straight lines extend the curve for iterations outside the table."""
 
     speeds: np.ndarray
     torques: np.ndarray
-
-    __repr__ = repr_with_units(speeds="rad/s", torques="N m", inertia="kg m2")
 
     def torque(self, speed):
         inside = np.clip(speed, *self.limits)

@@ -92,7 +92,7 @@ def parse_fluctuation(owner, fluctuation):
 
 
 def find_flywheel(wanted, running_with, unit):
-    """Flywheel in kg m2 for a coefficient of fluctuation, 0 where none is needed, and the running with it.
+    """Flywheel in kg m2 for a coefficient of fluctuation (0 if unnecessary), and the running with it.
 
     `running_with` returns the `Running` with a flywheel in kg m2, or raises `DriveError` where there is none; `unit` is
     the machine's own inertia, kg m2.
@@ -370,7 +370,7 @@ class Running:
         Raises
         ------
         QuantityError
-            There is no such quantity; the message lists all and suggests the nearest.
+            The quantity is unknown; the message lists all and suggests the nearest.
 
         Examples
         --------

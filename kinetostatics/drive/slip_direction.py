@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from ..cycle.kinks import FINE_SAMPLES, sign_changes
+from ..cycle.kinks import FINE_SAMPLES
 from ..machine.links import Rolling
 from ..machine.loads import TURN
 from ..mechanics.friction import pair_rate
+from ..numbers.sign_changes import sign_changes
 
 ANGLE_TOLERANCE = 1e-12
 """Crank angles nearer than this to an end of the period, rad, count as 0."""
@@ -52,7 +53,8 @@ class SlipDirections:
             found = (pair_rate(part, name, pair, placement) for part, name, pair in moving)
             return [1.0 if rate is None else rate for rate in found]
 
-        row, angle = (part[0] for part in sign_changes(rates, period, FINE_SAMPLES * round(period / TURN)))
+        changes = sign_changes(rates, period, FINE_SAMPLES * round(period / TURN))
+        row, angle = changes.row[0], changes.angle[0]
         angle = np.where((angle < ANGLE_TOLERANCE) | (angle > period - ANGLE_TOLERANCE), 0.0, angle)
         edges = {name: np.unique(angle[row == place]) for place, (_, name, _) in enumerate(moving)}
         signs = {}

@@ -12,7 +12,7 @@ from ..mechanics.jamming import checks_of, solve_friction
 from ..numbers import checks
 from ..numbers.arithmetic import read_only
 from ..numbers.brackets import find_roots
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.lazy import cached_property, pyplot
 from ..numbers.output_units import output_units
 from ..numbers.parameter_tree import replace_unchecked
@@ -27,6 +27,7 @@ KINK_TOLERANCE = 1e-9
 """Largest distance, rad, of a kink at the end of a step."""
 
 
+@with_units(time="s", crank_angle="rad")
 class Event(NamedTuple):
     """Event at a time and crank angle of a motion over time.
 
@@ -53,8 +54,6 @@ class Event(NamedTuple):
     name: str
     time: float
     crank_angle: float
-
-    __repr__ = repr_with_units(time="s", crank_angle="rad")
 
 
 @dataclass(frozen=True, eq=False)

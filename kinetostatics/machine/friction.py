@@ -300,7 +300,7 @@ def _roller_problems(name, given, tightest, own):
     if tightest is not None and checks.has_known_values(tightest) and np.any(np.asarray(given) >= tightest):
         yield (
             f"{words} less than the smallest radius of curvature of its path, {np.min(tightest):.6g} m: no cam has "
-            "such a profile; give a smaller roller or a larger cam"
+            "this profile; give a smaller roller or a larger cam"
         )
     if own is not None and checks.has_known_values(own) and np.any(other := np.asarray(given) != own):
         yield checks.Problem(f"{words} that of the roller of its group, {np.max(own):.6g} m", other)

@@ -280,14 +280,12 @@ class Part:
         """Pairs of links, by the name of the reaction or force.
 
         A reaction has the name of its joint: with the label if the group is attached to that joint, with the link if it
-        is attached to several. The reaction of a slider or roller has the name of its force without suffix.
+        is attached to several. Other pairs have a `name`.
         """
         found: dict[str, Any] = {}
         for pair in self.declaration.pairs:
-            if isinstance(pair, Meshing):
+            if not isinstance(pair, Turning):
                 name = self.called(pair.name)
-            elif not isinstance(pair, Turning):
-                name = self.called(pair.force.removesuffix("_force"))
             elif pair.joint not in self.hangs_on:
                 name = pair.joint
             else:

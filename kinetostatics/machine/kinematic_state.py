@@ -174,7 +174,7 @@ def require_positions(group, placement, margins):
     wrong, value, angle = np.broadcast_arrays(~known & ~(margins < 0.0) | np.isnan(margins), margins, placement.angle)
     if wrong.any():
         text = "its closure must be a number, negative where its place finds no position, but is"
-        where = f"such crank angles, the first {np.degrees(angle[wrong][0]):.6g} deg"
+        where = f"crank angles, the first {np.degrees(angle[wrong][0]):.6g} deg"
         checks.require(type(group).__name__, f"{text} {value[wrong][0]:.6g} at {wrong.sum()} {where}")
 
 

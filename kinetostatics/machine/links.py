@@ -265,6 +265,11 @@ class Sliding(NamedTuple):
     couple: str
     about: str = ""
 
+    @property
+    def name(self):
+        """Name of the reaction: that of the force without suffix."""
+        return self.force.removesuffix("_force")
+
 
 class Rolling(NamedTuple):
     """Roller on a pin of `link` at `joint`, on a curve of the link `against`.
@@ -276,6 +281,7 @@ class Rolling(NamedTuple):
     joint: str
     force: str
     against: str = "frame"
+    name = Sliding.name
 
 
 class Meshing(NamedTuple):

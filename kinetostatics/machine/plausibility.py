@@ -43,7 +43,7 @@ TWO_TURNS = 4.0 * np.pi
 TURN_CONVERTED_TWICE = 2.0 * np.pi * np.pi / 180.0
 """A turn in radians, converted from degrees to radians again."""
 CONVERTED_TURN_LIMITS = 0.9 * TURN_CONVERTED_TWICE, 1.01 * TURN_CONVERTED_TWICE
-"""Range of crank angles that may be such a turn, with or without its end, rad."""
+"""Range of crank angles of a turn converted twice, with or without its end, rad."""
 
 
 def mechanism_hints(mechanism):

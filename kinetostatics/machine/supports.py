@@ -9,7 +9,7 @@ from collections import Counter
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.planar import minus, subtract_vectors
 from .group import FRAME
 from .links import CamDriven, Rolling
@@ -18,6 +18,7 @@ MOTOR = "motor"
 """Place at which the drive takes the opposite of the balancing torque."""
 
 
+@with_units(force="N", point="m", couple="N m")
 class Support(NamedTuple):
     """Force (x, y) and couple of the machine on the frame, N and N m, and the point at which the force acts, m.
 
@@ -28,8 +29,6 @@ class Support(NamedTuple):
     force: Any
     point: Any
     couple: Any = None
-
-    __repr__ = repr_with_units(force="N", point="m", couple="N m")
 
     def opposite(self):
         """The opposite force and couple at the same point."""

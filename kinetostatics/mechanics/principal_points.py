@@ -19,10 +19,11 @@ from ..machine.group import FRAME
 from ..machine.links import acceleration_of, arm, first_at, present, second_at
 from ..machine.loads import Load, spring_masses
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.planar import add_vectors, plus, product, scale_vector
 
 
+@with_units(mass="kg", static_moments="kg m", carried="kg")
 @dataclass(frozen=True, eq=False)
 class PrincipalPoints:
     """Principal points of a mechanism; `principal_points` returns them.
@@ -49,8 +50,6 @@ class PrincipalPoints:
     mass: Any
     static_moments: dict
     carried: dict
-
-    __repr__ = repr_with_units(mass="kg", static_moments="kg m", carried="kg")
 
     @property
     def moduli(self):

@@ -1,7 +1,7 @@
 """Elementary functions of any number: NumPy, JAX and dask arrays, `arb` enclosures, recorded numbers.
 
 The kernels take sin, exp, sqrt, clamped roots and compensated sums from here alone, so one source serves every engine.
-A number of an engine brings its own methods (`forgiving_root`, `kept_off_zero`, `total_with` ...).
+Numbers of an engine have their own methods (`forgiving_root`, `kept_off_zero`, `total_with` ...).
 
 `compensated_sum` is SumK with K = 3 (Ogita, Rump and Oishi, *Accurate sum and dot product*, SIAM J. Sci. Comput. 26,
 2005) on Knuth's `two_sum`; `two_square` splits its argument as Veltkamp and Dekker do.
@@ -11,6 +11,8 @@ import numpy as np
 
 from ..errors import ParameterError
 
+TURN = 2.0 * np.pi
+"""Full turn, rad."""
 _namespaces = dict.fromkeys((np.ndarray, np.float64, float, int), np)
 
 
@@ -100,7 +102,7 @@ def clamped_sqrt(square, unit):
     """Root of a square, clamped to 0 where rounding makes the square negative, NaN where it is truly negative.
 
     `unit` is the size of the terms of the square: down to ``-SQUARE_TOLERANCE unit`` it counts as 0. NaN also where
-    both underflow, for the sign of the square is unknown then.
+    both underflow, because the sign of the square is then unknown.
     """
     if _holds_objects(square):
         return _call_method("forgiving_root", square, unit, lambda square: square.sqrt())
@@ -146,14 +148,14 @@ def offset_from_zero(distance, unit):
 
 
 def compensated_sum(*terms):
-    """Sum of up to six numbers as if rounded once, so cancellation loses no digits; None terms are skipped.
+    """Sum of up to six numbers, accurate as if rounded once, so cancellation loses no digits; None is skipped.
 
-    Numbers of other kinds, enclosures for example, are summed plainly.
+    Numbers of other kinds, such as enclosures, are summed plainly.
     """
     present = [term for term in terms if term is not None]
     if len(present) > MAX_SUM_TERMS:
         raise ParameterError(
-            f"arithmetic.total takes {MAX_SUM_TERMS} numbers at most, got {len(present)}; make two of it"
+            f"arithmetic.compensated_sum adds at most {MAX_SUM_TERMS} numbers, got {len(present)}; use two sums"
         )
     recorded = next((term for term in present if hasattr(term, "total_with")), None)
     if recorded is not None:
@@ -173,7 +175,7 @@ def sum_corrections(*terms):
 def length_error(length, x, y):
     """Rounding error of the length of a vector (x, y): (x^2 + y^2 - l^2) / (2 l) with exact squares.
 
-    In a `compensated_sum`, length plus error is as if exact. The error has no derivatives: it is zero in exact
+    In a `compensated_sum`, length plus error has no rounding error. The error has no derivatives: it is zero in exact
     arithmetic.
     """
     recorded = next((part for part in (length, x, y) if hasattr(part, "rest_with")), None)

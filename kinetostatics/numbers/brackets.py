@@ -1,7 +1,7 @@
 """Zeros and minima of functions within brackets, many at once, by the methods of Chandrupatla.
 
-They return the same bits as `find_root` and `find_minimum` of scipy.optimize.elementwise; a test compares them.
-Importing scipy.optimize takes 0.4 s, longer than solving a case, and its loop takes four times as long.
+They return the same bits as `find_root` and `find_minimum` of scipy.optimize.elementwise, as a test proves.
+Importing scipy.optimize takes 0.4 s, longer than solving a case, and its loop needs four times as long.
 """
 
 import numpy as np
@@ -23,7 +23,7 @@ def find_roots(function, low, high, tolerance=4 * TINY):
     low, high : array
         Ends of the brackets, of one shape.
     tolerance : float
-        Width of a bracket that is narrow enough.
+        Width of a sufficiently narrow bracket.
 
     References
     ----------
@@ -76,9 +76,9 @@ def find_minima(function, brackets, relative=EPSILON**0.5, tiny=TINY):
     brackets : array (3, K)
         Arguments in rising order.
     relative : float
-        Width of a bracket, relative to the argument, that is narrow enough.
+        Width of a sufficiently narrow bracket, relative to the argument.
     tiny : float
-        The same for the width itself, and for the difference of the values.
+        The same for the absolute width, and for the difference of the values.
 
     References
     ----------
@@ -114,7 +114,7 @@ def find_minima(function, brackets, relative=EPSILON**0.5, tiny=TINY):
 
 
 def _sectioned(x, value, before, narrow):
-    """Vertex of the parabola through three points, and where to evaluate: there if it has settled, else golden section.
+    """Vertex of the parabola through three points, and the next place: that if it has converged, else golden section.
 
     `before` is the vertex of the iteration before.
     """

@@ -45,7 +45,7 @@ def read_text(path, largest):
             raise
         raise CaseError(path, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
     if len(content) > largest:
-        raise CaseError(path, [f"cannot be read: it is larger than {largest / 1e6:g} MB, which such files never are"])
+        raise CaseError(path, [f"cannot be read: it is larger than {largest / 1e6:g} MB, too large for these files"])
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         raise CaseError(path, ["is not UTF-8 text, but UTF-16; save it as UTF-8"])
     if b"\0" in content:
@@ -62,7 +62,7 @@ def read_columns(path, wanted):
     Parameters
     ----------
     path : path
-        Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas stand between the columns,
+        Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas separate the columns,
         numbers have a decimal point, and every row has as many fields as the heading; empty lines are skipped.
         Comments, lines that begin with ``#``, may precede the heading. `formatting.parse_user_heading` reads the names.
     wanted : dict
@@ -179,7 +179,7 @@ def write_atomically(path):
     if problem:
         raise FileError(problem)
     path = Path(path)
-    if path.exists() and not path.is_file():  # a pipe or a device takes what is written as it comes
+    if path.exists() and not path.is_file():  # a pipe or a device accepts text directly
         with _errors_naming(path):
             yield path
         return
@@ -211,7 +211,7 @@ def _errors_naming(path, advice=""):
 
 
 def describe_os_error(error, elsewhere):
-    """Text of a system error without its number: file (`elsewhere` if it names none) and reason."""
+    """Text of a system error without its number: file (by default `elsewhere`) and reason."""
     return f"{error.filename or elsewhere}: {error.strerror or error}"
 
 
@@ -225,7 +225,7 @@ def _copy_permissions(path, before):
 
 
 def write_problem(path, *, inputs=(), endings=()):
-    """Why a result cannot be written to this file, as a sentence, or None; call it before a long calculation.
+    """Reason why a result cannot be written to this file, or None; call it before a long calculation.
 
     Parameters
     ----------
@@ -267,7 +267,7 @@ def folder_problem(path):
 
 
 def folder_write_problem(path):
-    """Why results cannot be written into this folder, as a sentence, or None; a missing folder is no fault."""
+    """Reason why results cannot be written into this folder, or None; a missing folder is no fault."""
     path = Path(path)
     try:
         standing = next(place for place in (path.absolute(), *path.absolute().parents) if os.path.lexists(place))

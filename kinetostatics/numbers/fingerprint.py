@@ -2,7 +2,7 @@
 
 `key_of` and `class_key` return keys of functions and classes within a process, for cached programs. A key holds code
 and the constants it refers to: globals, closures, defaults, attributes of functions, modules and classes. It is None
-where a value may change unseen, as the items of a list may.
+where a value may change unnoticed, for example the items of a list.
 
 `digest` returns a text that is the same in every session, for resumed sweeps: of a variant, a scene or a function. For
 a function it covers the compiled code and all it refers to: constants, defaults, closures, arguments of a `partial`,
@@ -32,15 +32,15 @@ CODE_ATTRIBUTES = tuple(
     f"co_{name}"
     for name in ("code", "consts", "names", "varnames", "freevars", "cellvars", "argcount", "posonlyargcount")
 ) + ("co_kwonlyargcount", "co_flags")
-"""Attributes of compiled code that decide what it does; not its file and lines."""
+"""Attributes of compiled code that determine its behaviour; not its file and lines."""
 IGNORED_ATTRIBUTES = {
     f"__{name}__" for name in ("dict", "weakref", "doc", "module", "annotations", "firstlineno", "slots")
 }
-"""Entries of a class that do not decide what it does."""
+"""Entries of a class that do not affect its behaviour."""
 
 
 def key_of(value, names=(), above=()):
-    """Key of a constant, a function, or the used `names` of a module; None where a value may change unseen.
+    """Key of a constant, a function, or the used `names` of a module; None where a value may change unnoticed.
 
     `above` holds the objects that contain `value`; a reference to one of them becomes its depth.
     """
@@ -268,4 +268,4 @@ _PARTS = {
     MethodType: lambda item: [item.__func__, item.__self__],
     FunctionType: _function_parts,
 }
-"""Function of an object that returns what distinguishes it from others of its type, by type."""
+"""Function by type that returns the distinguishing data of an object."""

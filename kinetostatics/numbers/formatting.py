@@ -1,4 +1,4 @@
-"""Numbers, units and headings as text for people: no table, text or explanation shows a digit that is not known.
+"""Numbers, units and headings as text for people: no table, text or explanation shows an uncertain digit.
 
 This module alone decides the number of digits; command line, report, explanations and frames call it. Error messages
 format their few numbers themselves, with six digits as here.
@@ -9,10 +9,12 @@ import re
 import unicodedata
 from dataclasses import fields
 from decimal import ROUND_CEILING, Context, Decimal
+from typing import TypeVar
 
 from . import checks
 from .units import factor
 
+Result = TypeVar("Result")
 DIGITS = 6
 """Largest number of significant digits shown."""
 MAX_PLAIN_NUMBER = 1e9
@@ -81,8 +83,8 @@ def plain(value, unit=""):
     return f"{text} {unit}" if unit not in ("", "1") else text
 
 
-def repr_with_units(**units):
-    """A `__repr__` for a dataclass or named tuple of results, with these SI units by field.
+def with_units(**units):
+    """Decorator of a dataclass or named tuple of results, whose `repr` gets these SI units by field.
 
     Fields that are None, or have ``repr=False``, are left out.
     """
@@ -93,7 +95,11 @@ def repr_with_units(**units):
         shown = [f"{name}={plain(found, units.get(name, ''))}" for name, found in values if found is not None]
         return f"{type(result).__name__}({', '.join(shown)})"
 
-    return text
+    def decorate(kind: Result) -> Result:
+        setattr(kind, "__repr__", text)  # noqa: B010 - an assignment to a method is no type
+        return kind
+
+    return decorate
 
 
 def power_of(value):
@@ -107,7 +113,7 @@ def round_bound_up(bound):
 
 
 def round_uncertainty_up(uncertainty):
-    """An uncertainty as text with two digits, rounded up unless by less than a thousandth: 0.1 mm stay 0.1 mm."""
+    """An uncertainty as text with two digits, rounded up unless by less than a thousandth: 0.1 mm stays 0.1 mm."""
     return round_bound_up(0.999 * uncertainty)
 
 

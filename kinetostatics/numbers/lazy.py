@@ -1,6 +1,6 @@
 """Lazy loading and caching: public names, cached properties, pyplot.
 
-It imports nothing heavy, for the package itself loads it first.
+It has no heavy imports, because the package itself loads it first.
 """
 
 import functools
@@ -17,7 +17,7 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
 else:
 
     class cached_property(functools.cached_property):  # noqa: N801  spelled as in the standard library
-        """That of Python 3.12 without a lock: the lock of 3.11 costs more than most values."""
+        """As in Python 3.12, without a lock: the lock of 3.11 costs more than most values."""
 
         def __get__(self, instance, owner=None):
             if instance is None:
@@ -45,7 +45,7 @@ def public_name(package, name, otherwise=lambda name: ""):
     ----------
     package, name : str
     otherwise : function
-        From a name that is near no public name to the end of the error message.
+        From a name without a near public name to the end of the error message.
     """
     missing = f"module {package!r} has no attribute {name!r}"
     if name.startswith("_") and name != "__all__":  # Python itself asks for these
@@ -62,7 +62,7 @@ def public_name(package, name, otherwise=lambda name: ""):
     except AttributeError as error:
         if error.name != name or not isinstance(error.obj, ModuleType):
             raise
-        found = import_module(f"{error.obj.__name__}.{name}")  # a module of that room, not loaded yet
+        found = import_module(f"{error.obj.__name__}.{name}")  # a module of that folder, not loaded yet
     setattr(sys.modules[package], name, found)
     return found
 

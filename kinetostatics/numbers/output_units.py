@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from . import checks
-from .formatting import heading, parse_heading
+from .formatting import heading, number, parse_heading
 from .units import base_dimensions, base_factor, factor, quoted
 
 DIMENSIONS = {
@@ -57,6 +57,20 @@ class OutputUnits:
         """Factor from a unit to the one chosen for its dimension, and the chosen one; 1.0 and the unit without."""
         wanted = self.chosen.get(dimension_name(unit), unit) if self.chosen else unit
         return (1.0, unit) if wanted == unit else (base_factor(unit) / base_factor(wanted), wanted)
+
+    def text(self, value, unit):
+        """A number with its unit."""
+        factor, shown = self.of(unit)
+        return f"{number(factor * value)} {shown}"
+
+    def numbers(self, by_heading):
+        """Numbers by headings with units, "mean power [W]"."""
+        found = {}
+        for text, value in by_heading.items():
+            name, unit = parse_heading(text)
+            factor, shown = self.of(unit)
+            found[heading(name, shown) if unit else text] = factor * value
+        return found
 
     def table(self, frame, kept=()):
         """A pandas DataFrame in these units: by the units in its headings, and in its column `unit`.

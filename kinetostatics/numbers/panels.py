@@ -1,4 +1,4 @@
-"""A periodic function as Chebyshev polynomials on panels: narrow where the function needs it, ending at its kinks.
+"""A periodic function as Chebyshev polynomials on panels: narrow where the function needs it, with ends at its kinks.
 
 As chebfun does (Battles and Trefethen, SIAM J. Sci. Comput. 25, 2004). Nodes lie inside the panels, so a jump at the
 end of a panel belongs to no panel. Where panels would become tiny, bisection locates the kink between the curves that
@@ -17,9 +17,9 @@ PANEL_DEGREE = 16
 INITIAL_PANELS = 16
 """Number of panels at first."""
 MAX_HALVINGS = 14
-"""Halvings of a panel before it counts as one with a kink."""
+"""Number of halvings of a panel before it counts as having a kink."""
 COEFFICIENT_TOLERANCE = 1e-12
-"""Size of the last coefficients, relative to the largest value, at which a panel is narrow enough."""
+"""Largest size of the last coefficients of a resolved panel, relative to the largest value."""
 MAX_ROUGH_PANELS = 400
 """Largest number of unresolved panels; a function with more is rough everywhere."""
 TAIL_COEFFICIENTS = 3

@@ -1,4 +1,4 @@
-"""Parameter trees: a scene is flattened into a structure and its numbers, and put together again.
+"""Parameter trees: a scene is flattened into a structure and its numbers, and rebuilt from them.
 
 A scene is a tree of dataclasses and tuples. Its *structure*, a hashable nest of tuples, holds the kinds of parts,
 names, assembly modes, and zeros, which count as absent. Its *leaves* are the numbers in the order of the structure,
@@ -66,7 +66,7 @@ class Leaves:
     parts : list
         Parts that declare `TABULATED`, as sampled cams do: they are evaluated beforehand, not recorded.
     lasting : bool
-        Whether structure and leaves hold everything; False with user objects that may change unseen.
+        Whether structure and leaves are complete; False with user objects that may change unnoticed.
     """
 
     def __init__(self):
@@ -74,7 +74,7 @@ class Leaves:
 
     @cached_property
     def are_plain(self):
-        """Whether all leaves are floats, and structure and leaves hold everything."""
+        """Whether all leaves are floats, and structure and leaves are complete."""
         return self.lasting and not self.tables and FLOATS.issuperset(map(type, self.numbers))
 
     def shape(self, angles):
@@ -92,7 +92,7 @@ class Leaves:
 
 
 def unflatten(structure, number: Callable[[], Any], table: Callable[[], Any], part: Callable[[], Any]):
-    """Item of a structure; the functions are called in order, for each leaf one; no checks."""
+    """Item of a structure; the functions are called in order, one for each leaf; no checks."""
     if structure is NUMBER:
         return number()
     if structure is TABLE:
@@ -166,7 +166,7 @@ def replace_unchecked(item, **changes):
 
 
 def is_structural(field):
-    """Whether a dataclass field belongs to the structure and holds no number."""
+    """Whether a dataclass field belongs to the structure and has no number."""
     return field.type in STRUCTURAL_TYPES or bool(field.metadata.get("structural"))
 
 
@@ -235,7 +235,7 @@ def _unchanged(item, leaves):
 
 
 def _flatten_by_content(item, leaves):
-    """Function or object compared by its key; without a key it may change unseen."""
+    """Function or object compared by its key; without a key it may change unnoticed."""
     key = key_of(item)
     return _flatten_by_identity(item, leaves) if key is None else Opaque(item, key)
 
@@ -314,7 +314,7 @@ def _dataclass_flattener(kind):
 
 
 def _with_class_key(kind, flattened):
-    """The same for a user's class: its methods and constants belong to the structure."""
+    """The flattener for a user's class, whose methods and constants belong to the structure."""
 
     def with_key(item, leaves):
         key = class_key(kind, (kind,))
@@ -329,7 +329,7 @@ def _named_tuple_flattener(kind):
 
 
 MAX_STRUCTURES = 256
-"""Largest number of cached structures; the least recently used goes first."""
+"""Largest number of cached structures; the least recently used is dropped first."""
 
 
 class LeafIndex(int):
@@ -337,7 +337,7 @@ class LeafIndex(int):
 
 
 class StructureCache:
-    """A structure, as `flatten` returns it, and cached results that hold for all its items, by question."""
+    """A structure, as `flatten` returns it, and cached results valid for all its items, by question."""
 
     def __init__(self, structure):
         self.structure, self.known = structure, {}

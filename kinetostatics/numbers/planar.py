@@ -8,7 +8,7 @@ from .arithmetic import NEGLIGIBLE_LENGTH, length_error, offset_from_zero, sqrt
 
 
 class SymbolicZero:
-    """A zero that absorbs its factors and drops out of sums; its one object is `SYMBOLIC_ZERO`."""
+    """A zero that absorbs its factors and drops out of sums; `SYMBOLIC_ZERO` is its only object."""
 
     __slots__ = ()
     __array_ufunc__ = None  # so arrays leave operations to this class

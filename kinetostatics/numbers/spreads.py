@@ -53,7 +53,7 @@ def distributions(spreads):
     Raises
     ------
     ParameterError
-        A spread is of another form, or its unit not known; all of them at once.
+        A spread has another form, or its unit is unknown; the message lists all faults.
 
     Examples
     --------
@@ -145,7 +145,7 @@ class Spread(NamedTuple):
     @property
     def distribution(self):
         """Frozen distribution of scipy.stats."""
-        from scipy import stats  # takes 0.9 s
+        from scipy import stats  # needs 0.9 s
 
         low, *middle, high = self.numbers
         if self.kind == "normal":
@@ -177,7 +177,7 @@ class Spread(NamedTuple):
 
 
 def parse_spread(given):
-    """`Spread` of a text or quantities; `ValueError` if it is none."""
+    """`Spread` of a text or quantities; `ValueError` for any other value."""
     spread = Spread(*_parts(given))
     if spread.kind != "normal":
         _require_rising(spread.numbers)

@@ -95,7 +95,7 @@ def to_si(text, unit):
     Raises
     ------
     ValueError
-        No number, no unit, an unknown unit or one of another dimension; the message says which.
+        The text has no number or no unit, or the unit is unknown or of another dimension.
     """
     readable = isinstance(text, str) and len(text) <= MAX_TEXT_LENGTH
     found = _NUMBER_AND_UNIT.fullmatch(text) if readable else None
@@ -164,8 +164,8 @@ def _base(given, unit):
         raise ValueError(f'unit "{quoted(given)[1:-1]}" is not known{remedy}')
     if zero != 0.0:
         raise ValueError(
-            f'unit "{given}" has a zero of its own, so that twice its number is not twice as much; give a unit whose '
-            "zero is nothing, as K, or delta_degC for a difference"
+            f'unit "{given}" has its own zero point and is not proportional; give a unit whose '
+            "zero is absolute, as K, or delta_degC for a difference"
         )
     return scale, base
 
@@ -182,7 +182,7 @@ def _by_table(parts):
 
 
 def _by_pint(parts):
-    """The same by pint; `ValueError` for an unknown name."""
+    """Factor, powers and zero by pint; `ValueError` for an unknown name."""
     import pint
 
     registry = _registry()

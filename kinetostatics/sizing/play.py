@@ -18,7 +18,6 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from ..cycle.extremes import extrema
-from ..cycle.kinks import sign_changes
 from ..cycle.means import TERM_ROUNDING, closed_turn, means
 from ..cycle.piecewise import JUMP_OFFSET, rule, waves
 from ..errors import ParameterError
@@ -27,6 +26,7 @@ from ..machine.links import Turning, Wrench, arm
 from ..machine.loads import TURN, spring_masses
 from ..numbers import checks
 from ..numbers.planar import cross
+from ..numbers.sign_changes import sign_changes
 from .result import Row, Sized, warn_of_notes
 
 NUMBERS = {"clearance": ("m", POSITIVE), "damping": ("1", POSITIVE)}
@@ -206,7 +206,7 @@ def _judged(play, joint, reversals, angle):
             notes.append(f"the journal reached no periodic motion in {periods} periods: the last one is used")
         normal, lag = normal_force(angle), _within_half_a_turn(direction - motion(angle)[0])
         least = -_largest(lambda at: -normal_force(at), angle)
-        _, (changes,) = sign_changes(lambda at: [normal_force(at[0])], play.period, angle)
+        changes = sign_changes(lambda at: [normal_force(at[0])], play.period, angle).angle[0]
         leaving = (at for at in np.sort(changes) if normal_force(at + play.sense * BEFORE) < 0.0)
         starts = [(at, *motion(at)) for at in leaving]
     flights: list[Flight] = []

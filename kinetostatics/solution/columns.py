@@ -75,7 +75,7 @@ class ByName:
         Raises
         ------
         QuantityError
-            There is no such quantity; the message lists all and suggests the nearest. It is a `KeyError` too.
+            The quantity is unknown; the message lists all and suggests the nearest. It is a `KeyError` too.
 
         Examples
         --------

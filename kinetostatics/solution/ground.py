@@ -140,7 +140,7 @@ class Ground(Mapping):
     def table(self):
         """Largest force and couple at each place over the period, with their crank angles, a pandas DataFrame.
 
-        True extremes; the first row is the sum of all forces. NaN where a place has no force or no couple, and
+        Extremes are exact; the first row is the sum of all forces. NaN where a place has no force or no couple, and
         for the crank angle of a constant.
 
         Raises

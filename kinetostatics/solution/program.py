@@ -198,7 +198,7 @@ class Program:
         if tight and not self._is_own:
             raise ParameterError(
                 "program: tight bounds exist in double precision with the engines compiled and numpy; this one runs "
-                f"by {self.engine} in {self.precision} precision, so leave tight out, or compile such a program"
+                f"by {self.engine} in {self.precision} precision, so leave tight out, or compile a program with them"
             )
         state, leaves = self._at(angle, values)
         hint_at_angles(self.scene.mechanism.name, angle)

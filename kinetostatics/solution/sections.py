@@ -21,7 +21,7 @@ from ..errors import ConditionWarning
 from ..machine.cams.profile import POSITIVE
 from ..mechanics.free_body import INERTIA, LOAD, REACTION, WEIGHT, free_body
 from ..numbers import checks
-from ..numbers.formatting import repr_with_units
+from ..numbers.formatting import with_units
 from ..numbers.lazy import cached_property
 from ..numbers.planar import cross, dot
 
@@ -101,14 +101,13 @@ class Bar:
         return total, centre, bar * length**2 / 12.0 + sum(mass * (x - centre) ** 2 for x, mass in parts)
 
 
+@with_units(x="m", angle="rad")
 class SectionPeak(NamedTuple):
     """Largest value in the bar over the period, at `x` from the first pin, m, and a crank angle, rad."""
 
     value: float
     x: float
     angle: float
-
-    __repr__ = repr_with_units(x="m", angle="rad")
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -296,8 +296,8 @@ def _require_massless_links(machines, name):
             components(machine.moved_to(np.zeros(1)), name)
         except (TypeError, AttributeError) as error:
             raise ParameterError(
-                f"shares: a group of your own fails where nothing but {source} acts ({error}); what is zero comes to "
-                "its resolve as None: add it by the functions of kinetostatics.numbers.planar"
+                f"shares: a group of your own fails if only {source} acts ({error}). A zero is passed to "
+                "its resolve as None; add it by the functions of kinetostatics.numbers.planar"
             ) from error
 
 

@@ -1,7 +1,7 @@
-"""What users hold: motion and forces of a scene, each quantity computed by an engine when it is first read.
+"""Motion and forces of a scene, each quantity computed by an engine when it is first read.
 
 `Solution` reads top to bottom: checks, crank angles, forces, inertia and energy, friction, condition, explanation, and
-last how a quantity is asked of the engine. Positions, velocities and accelerations are those of `Motion`, proven bounds
+last the calls of the engine. Positions, velocities and accelerations are those of `Motion`, proven bounds
 and uncertainties those of `Certainty`. SI and radians; shapes (..., N), vectors (2, ..., N).
 """
 
@@ -64,9 +64,9 @@ def _scalar(name, text):
 
 @dataclass(frozen=True, eq=False)
 class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, Motion):
-    """Motion and forces of a mechanism at its crank angles; made by `solve` and `Scene.solve`.
+    """Motion and forces of a mechanism at its crank angles; `solve` and `Scene.solve` return it.
 
-    Every result is computed when first read, and kept; none can be written to. SI and radians throughout; angles count
+    Every result is computed when first read, and cached; arrays are read-only. SI and radians throughout; angles count
     counter-clockwise from +x. Arrays end with the crank angles, N of them; batch axes of designs come before: (..., N).
     A vector has (x, y) as its first axis: (2, ..., N).
 
@@ -84,11 +84,11 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     crank_speed, crank_acceleration : float or array
         omega, rad/s, and alpha, rad/s2, counter-clockwise positive.
     sense : None, float or array
-        Way that a crank at rest is about to turn, as given: +1 counter-clockwise, -1 clockwise.
+        Given sense in which a crank at rest is about to turn: +1 counter-clockwise, -1 clockwise.
     loads : tuple
     friction : mapping of joint to friction
     engine, silent
-        Engine that computes it; whether it warns no more.
+        Engine that computes it; whether it gives no further warnings.
     resolution : float
         Step of crank angles at which load functions without `kinks` are sampled, rad.
     shape, period, crank_sense, closed, closure, gravity
@@ -115,16 +115,16 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     Notes
     -----
-    A reaction acts on the body named last, on the other body the other way round:
+    A reaction acts on the body named last, and oppositely on the other body:
 
     - "O": ground on crank.
-    - "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from what carries A: the crank, or the
-      block of a cam roller. Of a group hung on another joint, "C": on its coupler, from what carries C.
+    - "A": on the coupler (rod, block of a lever or yoke, first link of a dyad), from the link of A: the crank, or the
+      block of a cam roller. For a group at another joint, "C": on its coupler, from the link of C.
     - "B", pin of a slider: coupler on slider; pin of a rocker: coupler on rocker; pin of a dyad: dyad1 on dyad2.
     - "O2", a fixed pivot: ground on rocker, on lever, on cylinder, on arm.
     - "guide": ground on slider, or on follower; friction included.
 
-    For groups and loads of one's own there are `placement` (joints and links as kinematic coefficients), `spot`,
+    Your own groups and loads may also use `placement` (joints and links as kinematic coefficients), `spot`,
     `as_vector`, `accelerating`; inside the library `dynamics`, `sampled`, `sampled_for_forces`, `apart`, `kind`,
     `places`, `PATHS`, `RULES`, `unsolved_at`, `moved_to`, `first_look`, `with_doubt`, `proportion`, `farthest`,
     `loads_are_given`, `is_given` and `check`.
@@ -174,7 +174,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     @cached_property
     def first_look(self):
-        """Sum of all lengths over the shortest, and whether hints may be due; None unless all numbers are plain."""
+        """Sum of all lengths over the shortest, and whether hints are possible; None unless all numbers are plain."""
         _, leaves = self.apart
         test = self.kind.answer(scene_plausibility_test) if leaves.are_plain and not leaves.parts else None
         return test and test(leaves.numbers)
@@ -188,7 +188,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     @property
     def is_given(self):
-        """Whether it contains no code of the user's, which may be wrong and is checked when it runs."""
+        """Whether it contains no user code, which may be wrong and is checked when it runs."""
         return self.mechanism.trusted and self.loads_are_given
 
     # Crank angles
@@ -213,7 +213,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         return moved
 
     def unsolved_at(self, crank_angle):
-        """The same with the passes over friction that it has; other crank angles may need more."""
+        """As `at`, with the present number of passes over friction; other crank angles may need more."""
         require_known_between_angles(self)
         return self.moved_to(crank_angles(crank_angle))
 
@@ -225,7 +225,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     @cached_property
     def period(self):
-        """Crank angle after which motion and loads repeat, rad: a turn unless loads or passed change points take more.
+        """Crank angle after which motion and loads repeat, rad: a turn, or more for some loads and change points.
 
         Extremes, means and tables cover one period.
         """
@@ -233,12 +233,12 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     @cached_property
     def sampled(self):
-        """The solution over one period, a `Turn`, from which extremes and means are found."""
+        """The solution over one period, a `Turn`, for extremes and means."""
         return Turn.of(self)
 
     @cached_property
     def sampled_for_forces(self):
-        """The same with passed change points treated as limit positions: reactions grow there."""
+        """As `sampled`, with passed change points treated as limit positions, where reactions grow."""
         return Turn.of(replace(self, silent=True), forces=True) if self.mechanism.passes else self.sampled
 
     # Forces and moments
@@ -249,10 +249,10 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         return tuple(name for name, output in self.mechanism.outputs.items() if output.vector)
 
     def reaction(self, joint, at=None):
-        """Reaction at a joint, (2, ..., N), N; infinite at a change point that is passed, with a ConditionWarning.
+        """Reaction at a joint, (2, ..., N), N; infinite at a passed change point, with a ConditionWarning.
 
         "O": ground on crank; "A": on the coupler at A, from crank or block; "B": coupler on slider; "guide": ground
-        on slider. `at` "left" or "right": the part of "O" that one of the main bearings takes (``Crank(bearings=)``).
+        on slider. `at` "left" or "right": the part of "O" in one of the main bearings (``Crank(bearings=)``).
 
         Examples
         --------
@@ -279,9 +279,9 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     balancing_torque = _scalar(
         "balancing_torque",
-        """Torque M on the crank that the drive gives to keep the prescribed motion, counter-clockwise positive, N m.
+        """Torque M of the drive on the crank for the prescribed motion, counter-clockwise positive, N m.
 
-        Its power is M omega, whichever way the crank turns: with omega > 0 the drive pushes where M > 0 and brakes
+        Its power is M omega for both senses of rotation. With omega > 0 the drive pushes where M > 0 and brakes
         where M < 0; with omega < 0 it pushes where M < 0 and brakes where M > 0.
         M = J alpha + J' omega^2 / 2 + load torque, with the reduced inertia J.
         """,
@@ -327,7 +327,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         return total
 
     def pressure(self, name="contact_pressure"):
-        """Largest Hertz pressure of a line contact by name, (..., N), Pa; NaN where there is no such contact.
+        """Largest Hertz pressure of a line contact by name, (..., N), Pa; NaN without contact.
 
         A cam with a `Roller` and a follower with a `Face` have one; for a second follower the name ends with its label.
         """
@@ -400,9 +400,9 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     def shares(self, quantity):
         """Shares of inertia and weight of each link, and of each load, in a force or moment, a `Shares` table.
 
-        The share of a source is its value at the crank angle where the total is largest, for a vector its projection on
-        the total. Shares add up to the peak. Beside them stand peak and root mean square of each source alone. With
-        friction a row is the effect of leaving out its source, friction of a joint among them. For one design.
+        The share of a source is its value at the crank angle of the largest total, for a vector its projection on
+        the total. Shares add up to the peak. The table also has peak and root mean square of each single source. With
+        friction a row is the effect of leaving out its source, or the friction of a joint. For one design.
 
         Parameters
         ----------
@@ -412,7 +412,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         Raises
         ------
         QuantityError
-            There is no such quantity, or it is not linear in masses and loads; the message lists those that are.
+            The quantity is unknown or not linear in masses and loads; the message lists the linear ones.
         ParameterError
             The solution is a batch of designs or does not close all round, or the quantity is 0 or grows without bound.
         JammingError
@@ -441,30 +441,30 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     @cached_property
     def condition(self):
-        """How many times relative errors of lengths, rounding among them, are magnified in rates and forces, (..., N).
+        """Magnification of relative errors of lengths, including rounding, in rates and forces, (..., N).
 
         A bound of the true magnification: the sum over all lengths and the crank angle p of ``|p dq/dp|``, over the
-        largest term of q, worst of rates, reactions and torque (`solution.condition`). Below 1e3 where nothing is lost,
-        infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has about
-        16 - log10(condition) correct digits of its largest term, or more.
+        largest term of q, worst of rates, reactions and torque (`solution.condition`). Below 1e3 no digit is lost. It
+        is infinite at a limit position, toggle or change point, NaN where the mechanism does not close; a result has
+        about 16 - log10(condition) correct digits of its largest term, or more.
 
-        Where change points are passed ("open", "crossed") it covers motion and torque alone, which are ordinary there;
+        Where change points are passed ("open", "crossed") it covers only motion and torque, which are finite there;
         `condition_of` gives it for a reaction.
 
         Derivatives are exact, those of the recorded program. Where a group of the user's own does more than arithmetic,
-        so that it cannot be recorded, they are differences, and a `ConditionWarning` says so.
+        so that it cannot be recorded, they are differences, with a `ConditionWarning`.
         """
         return read_only(condition(self.dynamics).reshape(self.shape))
 
     @cached_property
     def _condition_with_reactions(self):
-        """The same with reactions also where change points are passed, (..., N)."""
+        """As `condition`, with reactions also where change points are passed, (..., N)."""
         return read_only(condition(self.dynamics, reactions=True).reshape(self.shape))
 
     def condition_of(self, quantity):
-        """How many times relative errors are magnified in one quantity, relative to its largest value, (..., N).
+        """Magnification of relative errors in one quantity, relative to its largest value, (..., N).
 
-        Of a vector it is that of the magnitude: "O" as "|O|".
+        For a vector it is that of the magnitude: "O" as "|O|".
 
         Geometry (`condition`) times cancellation: the largest of the terms that a force or torque is the sum of, over
         its largest value, where spring and inertia nearly balance for instance. 16 - log10 of it are the digits left.
@@ -489,18 +489,18 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     def explain(self, quantity, angle, design=None):
         """The hand calculation of a quantity at one crank angle: formula, numbers with units, result, link by link.
 
-        The steps are the kernels' own arithmetic. Friction, which is found by iteration, is shown by the law that it
+        The steps are the kernels' own arithmetic. Friction, which needs iteration, is shown by the law that it
         satisfies.
 
         Parameters
         ----------
         quantity : str
-            Any that the solution has: "balancing_torque", a joint (its reaction), "slider_acceleration" ...;
+            Any quantity of the solution: "balancing_torque", a joint (its reaction), "slider_acceleration" ...;
             ``"|O|"`` for the magnitude of a vector.
         angle : float
-            Crank angle, rad; it need not be one of those solved.
+            Crank angle, rad; any angle, not only solved ones.
         design : int or tuple of int, optional
-            Which one of several designs.
+            One of several designs.
 
         Returns
         -------
@@ -534,11 +534,11 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
         return solution_frame(self, units)
 
-    # How a quantity is asked of the engine
+    # Calls of the engine
 
     @cached_property
     def dynamics(self):
-        """The scene at its crank angles, as engines take it and kernels compute it."""
+        """The scene at its crank angles, as input of engines and kernels."""
         shared = dict(zip(SHARED_WITH_DYNAMICS, read_shared(self), strict=True))
         return construct_unchecked(Dynamics, **shared, way=getattr(self.engine, "way", None))
 
@@ -549,7 +549,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         return {}
 
     def _force(self, kind, name, vector):
-        """A force by name, once known without looking up its name."""
+        """A force by name, without a second look-up of the name."""
         known = self._values.get(name) if isinstance(name, str) and name != "closure" else None
         if known is None or (getattr(known, "ndim", 0) > len(self.shape)) != vector:
             self._look_up(kind, name, dict.fromkeys(self.reactions if vector else self.scalars))
@@ -559,7 +559,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         return known
 
     def _warn_of_growth(self, name, found):
-        """Warn once where a force grows without bound at a change point that is passed."""
+        """Warn once where a force grows without bound at a passed change point."""
         if not self.silent and self.mechanism.grows(name):
             is_plain = isinstance(found, np.ndarray) and found.dtype == float
             text = assembly.unbounded_force_problem(self, name, found) if is_plain else None
@@ -569,7 +569,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
 
     def _at_joint(self, joint, ending):
         """A quantity of friction at a joint; 0 without friction there."""
-        self._look_up("joint that rubs", joint, self.mechanism.pairs)
+        self._look_up("joint with friction", joint, self.mechanism.pairs)
         return self._found(joint + ending) if joint in self.friction else self._scalar(None)
 
     def _found(self, name):

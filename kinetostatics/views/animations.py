@@ -22,7 +22,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
     ----------
     solution : Solution
     joints : sequence of str, optional
-        Reactions drawn as arrows from their joints ("guide" at B); by default those of O, A and B that exist. The
+        Reactions drawn as arrows from their joints ("guide" at B); by default at O, A and B. The
         largest of all is as long as the crank. Nothing is drawn where the mechanism does not close.
     frames : int
         Poses shown, at crank angles of the solution; if these cover less than a period, the whole period is solved,
@@ -72,7 +72,7 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
 def _moving_parts(ax, shape, solution, joints):
     """A function that moves all parts to a step and returns their artists, and the points (2, K) of the parts.
 
-    Of the arrows of reactions the largest is as long as the crank, with its size in the title.
+    The largest arrow of the reactions is as long as the crank; its size is in the title.
     """
     made = solution.mechanism
     strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
@@ -117,7 +117,7 @@ def _largest_finite(values):
 
 
 def _clipped_reaction(solution, joint):
-    """Reaction at a joint; near change points, where it grows without bound, no longer than most others."""
+    """Reaction at a joint; near change points, where it grows without bound, limited to the size of most others."""
     force = solution.reaction(joint)
     if not solution.mechanism.grows(joint):
         return force

@@ -9,6 +9,7 @@ from matplotlib.patches import Circle
 from ..numbers import checks
 from ..numbers.output_units import shown_units
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
+from .labels import label
 
 POINTS_PER_TURN = 1440
 """Crank angles of a drawn curve over one turn."""
@@ -62,9 +63,9 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
         ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
         ax.plot(*np.stack([np.zeros(2), centre], axis=1), color=STEEL, lw=0.5, ls=":")
         ax.plot(*touch, ".", color=INK, ms=4)
-        ax.annotate(f"{degrees:g}°", centre, ha="center", va="center", fontsize="x-small")
+        label(ax, f"{degrees:g}°", centre)
     ax.plot(0.0, 0.0, "+", color=INK, ms=8)
-    ax.annotate("O", (0.0, 0.0), xytext=(4, -10), textcoords="offset points", fontsize="small")
+    label(ax, "O", (0.0, 0.0), fontsize="small")
     ax.set_aspect("equal", adjustable="datalim")
     ax.margins(0.08)
     ax.set(xlabel="x [m]", ylabel="y [m]")
@@ -131,11 +132,13 @@ def cam_pressure_angle(cams, largest=None, ax=None):
 
 
 def contact_pressure(contacts, ax=None):
-    """Hertz pressure of the roller on its cam over the crank angle; lines mark changes of the contact side.
+    """Hertz pressure of a roller or flat face on its cam over the crank angle.
+
+    Lines mark changes of the contact side; the intervals in which a follower lifts off are shaded.
 
     Parameters
     ----------
-    contacts : Contact or mapping of label to Contact
+    contacts : Contact, FollowerContact or mapping of label to one
         From ``ks.design.contact``.
     ax : Axes, optional
 
@@ -157,10 +160,17 @@ def contact_pressure(contacts, ax=None):
         )
         for angle in contact.changes:
             ax.axvline(np.degrees(angle), color=line.get_color(), lw=0.6, ls=":")
+        lifted, period = getattr(contact, "lifted", ()), contact.solution.period
+        shade = {"color": line.get_color(), "alpha": 0.12, "lw": 0}
+        for span in lifted:
+            for turns in (-1.0, 0.0, 1.0):  # an interval may pass the end of the period
+                ax.axvspan(*np.degrees(np.clip(np.add(span, turns * period), 0.0, period)), **shade)
+        if lifted:
+            ax.fill_between([], [], label=f"{name}: lift-off" if name else "lift-off", **shade)
         if "pressure" in contact.limits:
             ax.axhline(contact.limits["pressure"] / 1e6, **LIMIT_STYLE)
     ax.set_ylim(bottom=0.0)
-    return _label_axes(ax, "Hertz pressure [MPa]", len(named) > 1)
+    return _label_axes(ax, "Hertz pressure [MPa]", len(ax.get_legend_handles_labels()[1]) > 1)
 
 
 def law_motion(laws, ax=None):
@@ -217,7 +227,7 @@ def _label_axes(ax, text, legend):
     ax.set(xlabel=FROM_X.axis, ylabel=text)
     ax.set_xticks(np.arange(0, 361, 60))
     if legend:
-        ax.legend(frameon=False, fontsize="small")
+        ax.legend(edgecolor="none", fontsize="small")
     return ax
 
 

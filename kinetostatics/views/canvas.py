@@ -1,6 +1,6 @@
 """Common parts of all figures: axes, labels, units, line styles, legends, and curves with their peaks and gaps.
 
-Curves go over the crank angle. `with_peaks` adds crank angles of extremes, kinks and jumps between those solved.
+Curves are over the crank angle. `with_peaks` adds crank angles of extremes, kinks and jumps between those solved.
 `shade_gaps` marks crank angles without a value, and `limit_axis` keeps values that grow without bound off the scale.
 """
 
@@ -55,7 +55,7 @@ STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 
 
 def axes(ax):
-    """The axes given, or new ones."""
+    """The given axes, or new ones."""
     checks.require("plots", None if ax is None or hasattr(ax, "plot") else f"ax must be matplotlib Axes, got {ax!r}")
     if ax is not None:
         return ax
@@ -71,7 +71,7 @@ def solutions_by_label(solutions, name):
     named = dict(solutions) if several else {"solution": solutions}
     checks.require(
         "plots",
-        None if named else "there are no solutions to draw",
+        None if named else "give at least one solution to draw",
         *(checks.solution(str(name) if len(named) > 1 else "solution", solution) for name, solution in named.items()),
     )
     named = named if several else {label_of(solutions, name): solutions}
@@ -85,7 +85,7 @@ def solutions_by_label(solutions, name):
 
 
 def single_solution(solution):
-    """The solution; an error unless it is of one design."""
+    """The solution; an error for a batch of designs."""
     return next(iter(solutions_by_label({"solution": solution}, "").values()))
 
 
@@ -110,7 +110,7 @@ def with_line_styles(named):
 
 
 def grouped(items, alike):
-    """Lists of items that are alike, by a function of the first item of a list and another."""
+    """Lists of similar items, by a function of the first item of a list and another item."""
     groups: list[list[Any]] = []
     for item in items:
         group = next((group for group in groups if alike(group[0], item)), None)
@@ -123,18 +123,20 @@ def grouped(items, alike):
 
 LONG_LABEL = 20
 """Letters of a label from which on the legend has two columns at most."""
+MAX_LEGEND_SHARE = 0.35
+"""Height of a legend, relative to the axes, above which it stands beside them."""
 LEGEND_COLUMNS = (3, 2, 1)
 """Numbers of legend columns to try, until the legend fits into the axes."""
 SAME_CURVE_TOLERANCE = 2e-3
-"""Distance of two curves, relative to the extent of all, up to which they count as one."""
+"""Distance of two curves, relative to the extent of all, below which they count as equal."""
 ZERO_TOLERANCE = 1e-9
 """Size of a curve, relative to the largest, below which it counts as zero."""
 
 
 def distinct_curves(curves, apart=False):
-    """Legend labels of curves (N,) or (2, N), each with the name of the curve; curves that coincide have one label.
+    """Legend labels of curves (N,) or (2, N), each with the name of the curve; coincident curves share a label.
 
-    The label of a zero curve ends in "(0)". With `apart`, curves with scales of their own are compared by their own
+    The label of a zero curve ends in "(0)". With `apart`, curves with separate scales are compared by their own
     extents.
     """
     arrays = {name: np.asarray(curve, dtype=float) for name, curve in curves.items()}
@@ -162,7 +164,7 @@ def period_curve(solution, value, counted=FROM_X):
 
 
 def draw_curves(ax, curves):
-    """Draw curves (2, N) by label, each in its own style; curves that coincide are drawn once."""
+    """Draw curves (2, N) by label, each in its own style; coincident curves are drawn once."""
     for text, name, style in with_line_styles(distinct_curves({name: value for name, (_, value) in curves.items()})):
         ax.plot(*curves[name], linestyle=style, label=text)
 
@@ -177,11 +179,11 @@ def axis_words(column):
 
 
 ORDINARY_SHARE = 0.9
-"""Share of values that count as ordinary where a few grow without bound."""
+"""Fraction of ordinary values if a few grow without bound."""
 UNBOUNDED_RATIO = 1e4
 """Ratio to the ordinary values above which others grow without bound."""
 DRAWN_RATIO = 3.0
-"""Ratio to the ordinary values up to which unbounded values are drawn."""
+"""Largest ratio of drawn unbounded values to the ordinary ones."""
 GAP_REACH = 36
 """Share of the crank angles, 1 / `GAP_REACH`, on each side of a gap where values may grow without bound."""
 
@@ -216,7 +218,7 @@ def hidden_beyond(limit, values):
 
 
 def drawn_limit(arrays):
-    """Magnitude up to which values are drawn, so that a few unbounded ones do not flatten the rest; or infinity."""
+    """Largest drawn magnitude, so that a few unbounded values do not flatten the rest; or infinity."""
     most = ordinary_size(arrays)
     beyond = any(np.any(np.abs(array) > most) for array in arrays)
     return DRAWN_RATIO * most if beyond else np.inf
@@ -259,7 +261,10 @@ def finish_axes(ax, ylabel, legend, period=360, counted=FROM_X):
             box = ax.legend(handles, texts, ncols=columns, **style).get_window_extent()
             if box.width <= ax.bbox.width:
                 break
-        share = min(box.height / ax.bbox.height, 0.4)
+        share = box.height / ax.bbox.height
+        if share > MAX_LEGEND_SHARE:
+            ax.legend(handles, texts, **style | {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)})
+            share = 0.0
         ax.margins(y=max(0.18, share / (1.0 - 2.0 * share)))
     if ax.dataLim.ymin >= -ZERO_TOLERANCE * ax.dataLim.ymax:
         ax.set_ylim(bottom=-0.05 * ax.dataLim.ymax or None)
@@ -281,7 +286,7 @@ def set_equal_scales(ax, moving=()):
 def with_peaks(named, *quantities):
     """Solutions by label with added crank angles: extremes of quantities, and kinks of tables and friction.
 
-    All solutions get the angles of all, so curves that coincide still do. A solution stays unchanged if nothing is
+    All solutions get the angles of all, so coincident curves remain so. A solution is unchanged if nothing is
     known between its crank angles, or these do not rise.
 
     Parameters
@@ -307,7 +312,7 @@ def with_peaks(named, *quantities):
 
 
 def angles_between(solution, extremes):
-    """Rising crank angles of extremes that the solution lacks, of kinks, and of both sides of jumps."""
+    """Rising crank angles of missing extremes, of kinks, and of both sides of jumps."""
     there = np.abs(extremes[:, None] - np.mod(solution.crank_angle, solution.period)).min(axis=1) < PLACED
     return np.unique(np.concatenate([extremes[~there], solution.sampled.beside_kinks]))
 
@@ -365,17 +370,31 @@ def _reason_missing(closed, solution):
 
 
 def draw_over_turn(ax, named, curves, label, unit, counted):
-    """Draw curves (2, N) over the longest period, with gaps shaded and values without bound off the scale."""
-    draw_curves(ax, curves)
-    period = round(np.degrees(max(solution.period for solution in named.values())))
+    """Draw curves (2, N) over the longest period, with gaps shaded and values without bound off the scale.
+
+    Curves of a shorter period are repeated.
+    """
+    longest = max(solution.period for solution in named.values())
+    draw_curves(ax, {name: _repeated(curve, named[name].period, longest) for name, curve in curves.items()})
+    period = round(np.degrees(longest))
     finish_axes(ax, label, len(named) > 1, period, counted)
     limit_axis(ax, [value for _, value in curves.values()], unit)
     shade_gaps(ax, named, curves, counted)
     return ax
 
 
+def _repeated(curve, period, longest):
+    """Curve (2, N) over a period, over as many periods as fit into the longest, closed between them."""
+    angle, value = curve
+    turns = np.arange(round(longest / period))
+    span = np.ptp(angle) + np.max(np.diff(angle), initial=0.0)
+    if turns.size < 2 or abs(span - np.degrees(period)) > np.max(np.diff(angle), initial=0.0):
+        return curve
+    return np.stack([np.ravel(angle + np.degrees(period) * turns[:, None]), np.tile(value, turns.size)])
+
+
 def panels(count, columns, width, height, more=0.0):
-    """Figure of so many axes in rows, each of a width and height in inches, and the axes; `more` is added in height."""
+    """Figure of `count` axes in rows, each of a width and height in inches, and the axes; `more` is added in height."""
     import matplotlib.pyplot as plt
 
     columns = min(columns, count)
@@ -432,7 +451,7 @@ def write_notes(ax, lines):
 
 
 class CurveEnd(NamedTuple):
-    """End of a curve: its row, the direction there in degrees, and why; "" where it continues beyond the frame."""
+    """End of a curve: its row, the direction there in degrees, and the reason; "" if it continues beyond the frame."""
 
     row: int
     angle: float

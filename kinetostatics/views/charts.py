@@ -13,9 +13,9 @@ from ..errors import ParameterError
 from .canvas import ACCENT, axes, axis_words, panels, require_columns, save_figure
 
 MIN_DRAWN_ERROR = 1e-17
-"""Smallest error drawn, below the rounding of the largest value; zero errors lie there."""
+"""Smallest error drawn, below the rounding of the largest value; zero errors are drawn there."""
 MAX_DRAWN_ERROR = 1e3
-"""Largest error drawn; larger ones and NaN lie there."""
+"""Largest error drawn; larger ones and NaN are drawn there."""
 COLOURS = [plt.get_cmap("tab20")(number) for number in (0, 2, 4, 8, 10, 12, 14, 16, 18, 1, 3, 5, 9, 11, 13, 17, 19)]
 """Colours of methods without reds, which mark the library's own."""
 MARKERS = "osD^v<>PX*phd"
@@ -86,10 +86,10 @@ def work_precision(table, ax=None, like=None):
 
 
 def error_by_distance(table, ax=None):
-    """Error of every method over the number that leads to a place, logarithmic.
+    """Error of every method over the number that approaches a place, logarithmic.
 
-    Dashed: condition times rounding unit; dash-dotted: change by one rounding of the angle; dotted: the bound that
-    the library proves for its own values. Errors above a thousand times the largest value, and NaN, lie on the upper
+    Dashed: condition times rounding unit; dash-dotted: change by one rounding of the angle; dotted: the bound proven
+    by the library for its own values. Errors above a thousand times the largest value, and NaN, are on the upper
     edge.
 
     Parameters
@@ -135,7 +135,7 @@ def error_by_distance(table, ax=None):
 def model_ladder(needs, ax=None):
     """Error over operations: each simplification alone, and the ladder of the cheapest models; log scale.
 
-    Errors far below the tolerance lie on the lower edge.
+    Errors far below the tolerance are on the lower edge.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def model_ladder(needs, ax=None):
     'log'
     """
     if not hasattr(needs, "ladder"):
-        raise ParameterError(f"model_ladder: needs must be what ks.needs(...) returns, got a {type(needs).__name__}")
+        raise ParameterError(f"model_ladder: needs must be a Needs, as from ks.needs(...), got {type(needs).__name__}")
     ax = axes(ax)
     floor = 1e-3 * min(needs.within, 1e-2)
 
@@ -181,7 +181,7 @@ def sweep_map(table, parameters, output, ax=None, labels=None):
     Parameters
     ----------
     table : pandas.DataFrame
-        From `sweep`; designs that failed are left blank.
+        From `sweep`; failed designs are left blank.
     parameters : sequence of str
         Columns of one or two parameters.
     output : str

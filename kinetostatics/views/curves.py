@@ -28,14 +28,14 @@ from .canvas import (
 def chain_unit_motion(solutions, link, order=1, ax=None):
     """Relative angular velocity or acceleration of a link of the chain unit (Belarusian study, figures 5-12).
 
-    Both are counted in the crank's sense of turning and divided by crank speed, or its square; the crank angle from
-    +y, clockwise.
+    Both are positive in the crank's sense of rotation and divided by crank speed, or its square; the crank angle is
+    from +y, clockwise.
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
     link : "coupler" or "rocker"
-        Link of the four-bar, whatever its name.
+        Link of the four-bar, for any name of the link.
     order : 1 or 2
         Velocity or acceleration.
     ax : Axes, optional
@@ -76,7 +76,7 @@ def shaking_force(solutions, by="direction", ax=None):
     ----------
     solutions : Solution or mapping of label to Solution
     by : "direction" or "crank angle"
-        What the polar angle is.
+        Meaning of the polar angle.
     ax : polar Axes, optional
 
     Examples
@@ -113,15 +113,13 @@ def shaking_force(solutions, by="direction", ax=None):
 def require_turning(named):
     """Raise an error for solutions with the crank at rest."""
     still = [name for name, solution in named.items() if np.any(np.asarray(solution.crank_speed) == 0)]
-    require(
-        "plots", f"the crank speed of {', '.join(still)} is 0, but what is shown is relative to it" if still else None
-    )
+    require("plots", f"the crank speed of {', '.join(still)} is 0, but the figure is relative to it" if still else None)
 
 
 def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     """One quantity over the crank angle; curves that coincide are drawn once, with all their labels.
 
-    The curve includes extremes between the crank angles solved, kinks and jumps.
+    The curve includes extremes between the solved crank angles, kinks and jumps.
 
     Parameters
     ----------
@@ -200,8 +198,8 @@ def pressure_angle(solutions, ax=None):
 def acceleration_error(solutions, ax=None, slider=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 
-    With the stroke S from the true extremes of the slider position and psi the crank angle from the guide, the law is
-    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. The default is the only slider, or
+    With the stroke S from the exact extremes of the slider position, and psi the crank angle from the guide, the law is
+    -S/2 (omega^2 cos(psi) + alpha sin(psi)); deviations are relative to S/2 omega^2. By default the only slider, or
     the one without a label.
 
     Parameters

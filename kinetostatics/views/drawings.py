@@ -22,7 +22,7 @@ from .canvas import (
     solutions_by_label,
 )
 from .labels import label
-from .strokes import Shape, at_angles, strokes_by_owner, whole_turn
+from .strokes import Shape, at_angles, moving_surfaces, strokes_by_owner, whole_turn, working_curves
 
 PIN = {"marker": "o", "ms": 5, "mfc": "white", "mec": INK}
 _quarters = [Path.wedge(0, 90), Path.wedge(180, 270)]
@@ -42,7 +42,7 @@ MASS_CENTRE: tuple[dict[str, Any], ...] = (
 GRAVITY_PLACE, GRAVITY_LENGTH = (0.93, 0.12), 30.0
 """Tip of the arrow of gravity, shares of the axes, and its length, typographic points."""
 DOWNWARDS = np.cos(np.radians(1.0))
-"""Cosine of the angle from -y up to which gravity needs no arrow."""
+"""Cosine of the largest angle from -y without an arrow of gravity."""
 COUNTERWEIGHT_KINDS = ("counterweight", "bar")
 """Kinds of strokes in counterweights."""
 LINES: dict[str, dict[str, Any]] = {
@@ -52,6 +52,8 @@ LINES: dict[str, dict[str, Any]] = {
     "spring": {"color": INK, "lw": 1, "zorder": 2.5},
     "damper": {"color": INK, "lw": 1, "zorder": 2.5},
     "outline": {"color": ACCENT, "lw": 0.9, "ls": "-.", "zorder": 1.6},
+    "surface": {"color": INK, "lw": 1.2, "zorder": 1.6},
+    "tie": {"color": INK, "lw": 0.6, "zorder": 1.9},
     "line": {"color": INK, "lw": 0.8, "ls": "--", "zorder": 2.5},
     "force": {"color": LOAD, "lw": 1.5, "zorder": 5},
 }
@@ -63,21 +65,24 @@ PLATES: dict[str, dict[str, Any]] = {
     "roller": {"fc": "none", "ec": INK, "lw": 1.0, "zorder": 3.2},
 }
 """Styles of strokes drawn as filled shapes, by kind."""
+MIN_TEXT_SHADE = 0.6
+"""Smallest opacity of a crank angle beside a pose."""
 GROUND_DEPTH = 3.0
 """Depth of the ground below a fixed pivot, in half lengths of a block."""
 
 
 def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
-    """The mechanism at given crank angles: links, fixed pivots, guides, cam (pitch curve), mass centres and loads.
+    """The mechanism at given crank angles: links, fixed pivots, guides, cams, mass centres and loads.
 
-    Loads, counterweights, joint names and mass centres are drawn in the first pose. An arrow "g" in the corner shows
-    the direction of weight that does not act along -y. Arrows of loads point as the force or torque
+    A cam has its pitch curve and, if the radius of the roller is known, the working curve on each side that carries
+    force. Loads, counterweights, joint names and mass centres are drawn in the first pose. An arrow "g" in the corner
+    shows the direction of weight that does not act along -y. Arrows of loads point as the force or torque
     acts there; where it is zero or unknown, as at its largest magnitude; for functions, as a positive one.
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
-        Several must be machines that move alike: the first is drawn, with the counterweights and loads of each.
+        Several machines must have the same motion: the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
     ax : Axes, optional
@@ -105,7 +110,7 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     gaps = np.any(np.isnan(moving), axis=(0, 1))
     for row, (angle, shade) in enumerate(zip(angles, shades, strict=True)):
         text = f"{counted(angle):g}°{': cannot be assembled' if gaps[row] else ''}"
-        label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=shade)
+        label(ax, text, poses.position(first_moving_joint(poses.mechanism))[:, row], alpha=max(shade, MIN_TEXT_SHADE))
     return ax
 
 
@@ -113,9 +118,9 @@ def draw_poses(ax, named, angles, shades):
     """Draw machines by label at crank angles, degrees, each pose in a shade; returns the motion of the first."""
     solution = next(iter(named.values()))
     shape, poses = draw_fixed_parts(ax, solution), at_angles(solution, angles)
-    strokes = list(shape.strokes(poses))
+    strokes = [*shape.strokes(poses), *moving_surfaces(solution, poses)]
     owned = strokes_by_owner(named, angles[:1])
-    once = [stroke for stroke, owners in owned if len(owners) == len(named)]
+    once = [stroke for stroke, owners in owned if len(owners) == len(named)] + list(shape.ties(poses, solution.loads))
     moving = [name for name, point in shape.mechanism.joints.items() if point.link != FRAME]
     for row, shade in enumerate(shades):
         for stroke in strokes + (once if row == 0 else []):
@@ -147,7 +152,7 @@ def _draw_gravity(ax, gravity):
 
 
 def _draw_own(ax, strokes):
-    """Draw strokes that only some machines have, in colours by machine, with a legend."""
+    """Draw strokes of only some machines, in colours by machine, with a legend."""
     colours: dict[str, Any] = {}
     for stroke, owners in strokes:
         text = f"{'counterweight' if stroke.kind in COUNTERWEIGHT_KINDS else 'load'}: {', '.join(owners)}"
@@ -168,6 +173,9 @@ def draw_fixed_parts(ax, solution):
     shape = Shape(turn)
     for joint, text in made.curves.items():
         ax.plot(*turn.position(joint), color=ACCENT, lw=1, ls="--", label=text)
+    for body, points in working_curves(solution):
+        if body == FRAME:
+            ax.plot(*points, label="working curve of the cam", **LINES["surface"])
     for bar in made.crank.bars:
         ax.plot(*turn.position(bar.end), color=INK, lw=0.5, ls=":")
     for rail in shape.rails():

@@ -23,7 +23,7 @@ from .canvas import (
 def crank_speed(runs, ax=None):
     """Crank speed of machines in periodic running over the crank angle, its mean dotted.
 
-    A start or a coast is a `Trajectory` in place of a `Running`: draw its `speed` over its `time`.
+    A start or a coast is a `Trajectory`, not a `Running`: draw its `speed` over its `time`.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def crank_speed(runs, ax=None):
 
 
 def drive_torques(run, ax=None):
-    """Torques at the crank over the crank angle: motor, machine with its inertia, loads alone.
+    """Torques at the crank over the crank angle: motor, machine with inertia, loads only.
 
     Parameters
     ----------
@@ -188,7 +188,7 @@ def lost_power(solution, ax=None):
 
 
 def losses(solutions, ax=None):
-    """Mean power lost over the turn, a bar for each solution, stacked by joint, damper and drag, the sum on top.
+    """Mean power lost over the turn, a bar for each solution, stacked by joint, damper and drag, with the sum on top.
 
     Parameters
     ----------
@@ -204,7 +204,8 @@ def losses(solutions, ax=None):
     >>> [text.get_text() for text in ks.plots.losses({"greased": s}).get_xticklabels()]
     ['greased']
     """
-    named = solutions_by_label(solutions if isinstance(solutions, Mapping) else {"solution": solutions}, "lost power")
+    several = isinstance(solutions, Mapping)
+    named = solutions_by_label(solutions if several else {"": solutions}, "lost power")
     _require_losses(named)
     ax = axes(ax)
     lost = {name: solution.losses for name, solution in named.items()}
@@ -218,7 +219,8 @@ def losses(solutions, ax=None):
     for place, top in zip(places, bottom, strict=True):
         ax.annotate(f"{top:.3g}", (place, top), (0, 3), textcoords="offset points", ha="center", fontsize="small")
     slanted = max(map(len, lost)) * len(lost) > 45
-    ax.set_xticks(places, list(lost), **({"rotation": 25, "ha": "right"} if slanted else {}))
+    texts = list(lost) if several else [""]
+    ax.set_xticks(places, texts, **({"rotation": 25, "ha": "right"} if slanted else {}))
     ax.set_ylabel(f"mean power lost [{unit}]")
     ax.set_xlim(-0.6, len(lost) - 0.4)
     ax.set_ylim(0, 1.12 * bottom.max() or 1.0)

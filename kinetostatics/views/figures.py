@@ -3,6 +3,7 @@
 `FIGURES` lists the figures of a case by name, with the condition for each.
 """
 
+import textwrap
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -71,7 +72,7 @@ def draw_case(case, folder, file_format="png", only=None, progress=iter):
     Raises
     ------
     ParameterError
-        There is no figure of that name; the message lists them. Or the files cannot be written.
+        The figure is unknown; the message lists the names. Or the files cannot be written.
     """
     checks.require("figures", checks.case("case", case))
     figures = figures_of(case)
@@ -131,7 +132,7 @@ def _is_chain_unit(case):
 
 
 def figures_of(case, names=None):
-    """Functions that draw the figures of a case, by name; those of `FIGURES` that apply to it, or to some variants."""
+    """Functions that draw the figures of a case, by name; those of `FIGURES` that apply to some variant."""
     variants = list(map(case.variant, case.variants if names is None else names))
     found = {name for item in variants for name in of_mechanism(item.mechanism)}
     cams = {getattr(getattr(item.table, "cam", None), "kind", None) for item in variants}
@@ -151,7 +152,7 @@ def _with_friction(solutions):
 
 
 def _one_axes(plot, shown, width=6.4, height=4.0, **axes) -> Figure:
-    """A figure with one plot of all that is shown."""
+    """A figure with one plot of all given items."""
     figure, ax = plt.subplots(figsize=(width, height), layout="constrained", subplot_kw=axes)
     plot(shown, ax=ax)
     return figure
@@ -171,7 +172,7 @@ def _over_turn(quantity):
 
 
 def _hodographs(solutions, counted=FROM_X) -> Figure:
-    """Hodographs of the support reaction; those that coincide share a panel."""
+    """Hodographs of the support reaction; coincident ones share a panel."""
     reactions = {name: solution.reaction("O") for name, solution in solutions.items()}
     shown = {text: solutions[name] for text, name in distinct_curves(reactions, apart=True).items()}
     return _one_each(partial(hodograph, counted=counted), shown, 5.2, 4.6, 2)
@@ -182,7 +183,7 @@ def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
     figure, axes = panels(len(solutions), columns, width, height)
     for ax, (name, solution) in zip(axes, solutions.items(), strict=True):
         plot(solution, ax=ax)
-        ax.set_title(name)
+        ax.set_title(textwrap.fill(name, round(LETTERS_PER_INCH * width), break_on_hyphens=False))
     return figure
 
 
@@ -219,6 +220,8 @@ DRAWN_ANGLES = (40.0, 160.0, 280.0)
 """Crank angles at which mechanisms are drawn, degrees."""
 WIDE_RATIO = 1.7
 """Width over height above which a mechanism is drawn across the page."""
+LETTERS_PER_INCH = 9
+"""Letters of a title over an inch of its axes."""
 TITLE_HEIGHT = 0.8
 """Height of title and labels of axes, inches."""
 
@@ -280,7 +283,7 @@ FIGURES = {
         for order, kind in enumerate(("velocity", "acceleration"), 1)
     },
 }
-"""By name: the function that draws a figure, and what `figures_of` must find in a case for it."""
+"""By name: the function that draws a figure, and the condition for it in `figures_of`."""
 
 
 def front(found, ax=None):

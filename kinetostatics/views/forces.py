@@ -1,4 +1,4 @@
-"""Figures of forces: who causes a force, and the free body of a link."""
+"""Figures of forces: shares of a force by source, and the free body of a link."""
 
 from typing import Any
 
@@ -18,13 +18,13 @@ from .strokes import Shape, left, whole_turn
 
 BAR_HEIGHT = 0.38
 ROW_HEIGHT = 0.5
-"""Height of a row in a figure of its own, inches."""
+"""Height of a row in a separate figure, inches."""
 COLOURS = {REACTION: STEEL, INERTIA: ACCENT, WEIGHT: "tab:brown", LOAD: "tab:green", DRIVE: "tab:purple"}
 """Colours of arrows by kind of action."""
 
 
 def shares(solution, quantity, ax=None):
-    """Shares of all sources in a force or moment at its peak, a bar for each, beside the peak of each source alone.
+    """Shares of all sources in a force or moment at its peak, a bar for each, with the peak of each single source.
 
     With friction the bars are effects of leaving out a source (`Solution.shares`).
 
@@ -82,15 +82,15 @@ def shares(solution, quantity, ax=None):
 LONGEST_ARROW = 0.45
 """Length of the longest arrow, relative to the extent of the link."""
 MIN_EXTENT = 12.0
-"""Extent, in half lengths of a block, that a short link counts as at least."""
+"""Least extent of a link, in half lengths of a block."""
 HEAD, COUPLE_RADIUS, ARROW_GAP = 0.08, 0.12, 0.05
 """Length of arrow heads, radius of the first arc and distance of arrows side by side, relative to the longest arrow."""
 ARC, ARC_START, ARC_TURN = np.radians((250.0, 150.0, 115.0))
-"""Angle of the arc of a couple, where the first one starts, and from one to the next at the same point."""
+"""Angle of the arc of a couple, start of the first arc, and step between arcs at the same point."""
 SAME_DIRECTION = np.cos(np.radians(12.0))
-"""Cosine of the angle up to which arrows at one point lie side by side."""
+"""Cosine of the largest angle between arrows at one point that are drawn side by side."""
 PRESSING = 0.5
-"""Cosine of the angle from the mass centre up to which a force presses on the link, so that its arrow ends there."""
+"""Cosine of the largest angle from the mass centre of a pressing force, whose arrow ends at its point."""
 MIN_DRAWN = 1e-9
 """Force, relative to the largest, below which there is no arrow."""
 SCALE_SHARES = (1.0, 2.0, 5.0)
@@ -103,7 +103,7 @@ def free_body(solution, link, angle, ax=None):
 
     Joint reactions, inertia force at the mass centre (-m a) with the couple -I alpha, weight, loads, and on the crank
     the balancing torque; together they are zero. Friction is in the reactions. An arrow points at its point where the
-    force presses on the link there, else it starts there; arrows that would lie on each other stand side by side.
+    force presses on the link there, otherwise it starts there; overlapping arrows are drawn side by side.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def free_body(solution, link, angle, ax=None):
 
 def _draw_link(ax, shape, solution, link):
     """Draw a link in its pose with its joints and mass centre; its extent, m."""
-    strokes = list(shape.strokes(solution, (link,)))
+    strokes = [*shape.strokes(solution, (link,)), *shape.ties(solution, solution.loads, (link,))]
     for stroke in strokes:
         set_points(stroke_artist(ax, stroke, 0.55), stroke.points[..., 0])
     places = [solution.position((link, *corner))[:, 0] for corner in shape.corners[link].T]

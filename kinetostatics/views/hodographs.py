@@ -1,4 +1,4 @@
-"""Hodographs: the curve that the tip of a force draws over the turn, in fixed axes or in those of a link."""
+"""Hodographs: the curve of the tip of a force over the turn, in fixed axes or in the axes of a link."""
 
 from collections.abc import Mapping
 
@@ -34,9 +34,9 @@ MAX_COLUMNS = 3
 
 
 def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
-    """Hodograph of a force: the curve its tip draws over the turn (figure 7).
+    """Hodograph of a force: the curve of its tip over the turn (figure 7).
 
-    The curve includes extremes of the magnitude between the crank angles solved, kinks and jumps. It ends with a cross
+    The curve includes extremes of the magnitude between the solved crank angles, kinks and jumps. It ends with a cross
     where it has no value, and with an arrow head where it grows far beyond the rest.
 
     In the axes of a link the force turns relative to the link: the curve shows from which side the load comes on a pin
@@ -92,7 +92,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
 
 
 def rocking_moment(solutions, ax=None, marks=30, counted=FROM_X):
-    """Hodograph of the rocking moment: the curve that its vector (about x, about y) draws over the turn.
+    """Hodograph of the rocking moment: the curve of its vector (about x, about y) over the turn.
 
     Parameters
     ----------
@@ -119,12 +119,12 @@ def rocking_moment(solutions, ax=None, marks=30, counted=FROM_X):
 
 
 def hodographs(solutions, marks=90, counted=FROM_X):
-    """Hodographs of the forces on the frame, a panel for each place where the machine pushes it (`Solution.ground`).
+    """Hodographs of the forces on the frame, a panel for each place of contact (`Solution.ground`).
 
     Parameters
     ----------
     solutions : Solution or mapping of label to Solution
-        A panel shows those that have the place.
+        A panel shows the solutions with the place.
     marks, counted
         As for `hodograph`.
 
@@ -218,9 +218,9 @@ def _draw(ax, given, name, marks, counted, on=None, styles=None):
 
 
 def _extents(curves, most):
-    """Width or height of each curve, up to a largest one."""
-    finite = {name: curve[:, np.isfinite(curve).all(axis=0)] for name, curve in curves.items()}
-    return {name: min(np.ptp(part, axis=1).max() if part.size else 0.0, most) for name, part in finite.items()}
+    """Width or height of each curve with the origin, up to a largest one."""
+    drawn = {name: np.column_stack([np.nan_to_num(curve), (0.0, 0.0)]) for name, curve in curves.items()}
+    return {name: min(np.ptp(curve, axis=1).max(), most) for name, curve in drawn.items()}
 
 
 def write_angles(ax, solution, curve, rows, near, counted, color):

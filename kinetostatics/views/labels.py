@@ -1,4 +1,4 @@
-"""Labels that avoid each other and everything drawn; they are placed again whenever a figure is drawn."""
+"""Labels that avoid each other and all drawn objects; every drawing of a figure places them again."""
 
 from typing import Any, NamedTuple
 
@@ -12,10 +12,17 @@ DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
 """Directions from a point to its label, in order of preference."""
 DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0, 54.0, 76.0)
 """Distances between a point and the nearest side of its label, in typographic points."""
-LEADER_DISTANCE = 14.0
+LEADER_DISTANCE = 10.0
 """Distance from which on a leader line connects label and point."""
-ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE = 20.0, 4.0, 1.5, 10.0
-"""Costs of a label on another label, a point, a curve, and outside the axes; each place farther away costs 1/40."""
+ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE, NEAR_POINT = 20.0, 4.0, 1.5, 10.0, 3.0
+"""Costs of a label on another label, a point, a curve, outside the axes, and near another point than its own.
+
+Each farther place costs 1/40.
+"""
+CLEARANCE = 3.0
+"""Distance that a label keeps from the frame of the axes and from points of others, in typographic points."""
+GROUND = {"boxstyle": "square,pad=0.05", "fc": "white", "ec": "none", "alpha": 0.65}
+"""Ground of a label, so that it can be read on a line."""
 PLACEMENT_ROUNDS = 3
 """Rounds of placement: in the first, labels avoid earlier ones, then all others."""
 
@@ -43,16 +50,19 @@ class Labels(Artist):
                 marks.append((corners + _in_pixels(line).vertices[:, None]).reshape(-1, 4))
         shown = [text for text in self.texts if np.isfinite(text.xy).all()]
         points = ax.transData.transform([text.xy for text in shown]) if shown else ()
+        wide = CLEARANCE * scale * np.array([-1.0, -1.0, 1.0, 1.0])
         frees = []  # the places of each label, and their costs without other labels
         for text, point in zip(shown, points, strict=True):
             size = text.get_window_extent(renderer)
             places = _Places.around(point, size.width, size.height, scale)
             boxes = places.boxes
-            outside = ~_contain(np.array([ax.bbox.extents]), boxes.reshape(-1, 2)).reshape(-1, 2).all(axis=1)
+            outside = ~_contain(np.array([ax.bbox.extents]), (boxes + wide).reshape(-1, 2)).reshape(-1, 2).all(axis=1)
+            others = [other for other in points if not np.allclose(other, point)]
             costs = (
                 ON_POINT * _contain(boxes, np.array(points)).sum(axis=1)
                 + ON_POINT * _overlap(boxes, np.concatenate(marks)).sum(axis=1)
                 + ON_CURVE * sum((places.crossed(*path) for path in paths), np.zeros(len(boxes)))
+                + NEAR_POINT * _contain(boxes + wide, np.reshape(others, (-1, 2))).sum(axis=1)
                 + OUTSIDE * outside
             )
             frees.append((places, DISTANCE_COSTS + costs))
@@ -124,7 +134,7 @@ class _Places(NamedTuple):
         return cls(offsets, boxes, [Bbox.from_extents(box) for box in boxes], leaders, reaches)
 
     def crossed(self, path, extents, filled):
-        """Whether a path meets the box of each place, (P,); only boxes within its extents are looked at closely."""
+        """Whether a path meets the box of each place, (P,); only boxes within its extents are tested exactly."""
         count = _overlap(self.boxes, extents[None])[:, 0].astype(int)
         for place in np.flatnonzero(count):
             count[place] = path.intersects_bbox(self.bounds[place], filled=filled)
@@ -150,7 +160,7 @@ def label(ax, text, point, **style):
     keeper = next((item for item in ax.artists if isinstance(item, Labels)), None)
     if keeper is None:
         keeper = ax.add_artist(Labels())
-    options = {"textcoords": "offset points", "fontsize": "x-small", "ha": "left", "va": "bottom"}
+    options = {"textcoords": "offset points", "fontsize": "x-small", "ha": "left", "va": "bottom", "bbox": GROUND}
     made = ax.annotate(text, np.asarray(point, dtype=float), xytext=(6, 6), **options | style)
     keeper.texts.append(made)
     return made

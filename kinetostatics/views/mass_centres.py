@@ -31,7 +31,7 @@ SAME_POINT = 1e-6
 
 
 def mass_centres(solutions, angle=60, ax=None):
-    """Paths of the common mass centre, to one scale with the mechanism (mower study, figures 5a, 5b).
+    """Paths of the common mass centre, at the scale of the mechanism (mower study, figures 5a, 5b).
 
     Parameters
     ----------
@@ -76,9 +76,9 @@ def mass_centres(solutions, angle=60, ax=None):
 def principal_points(mechanism, angle=60, before=None, ax=None):
     """Principal points H1, H2 ... on the links, the contour of their vectors from O, and the common mass centre S.
 
-    H of a link lies h from its reference joint, fixed in the link; the vectors h, put end to end from O, lead to S
-    (mower study, figures 2, 5a, 5b). The contour stays parallel to the links. The path of S over the whole turn is
-    drawn too, with `before` also that of the machine before its counterweights.
+    H of a link is at h from its reference joint, fixed in the link. The vectors h, added from O, lead to S
+    (mower study, figures 2, 5a, 5b). The contour stays parallel to the links. The path of S over the turn is also
+    drawn, with `before` also the path of the machine before its counterweights.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def principal_points(mechanism, angle=60, before=None, ax=None):
     Raises
     ------
     ParameterError
-        The argument is no mechanism, a batch of designs, or without mass.
+        The argument is not a mechanism, is a batch of designs, or has no mass.
     AssemblyError
         The mechanism does not close at that crank angle.
 
@@ -133,7 +133,7 @@ def principal_points(mechanism, angle=60, before=None, ax=None):
 
 
 def _draw_points(ax, pose, vectors):
-    """Draw H of each link that has mass or carries it; numbers count all links from the crank outwards."""
+    """Draw H of each link with mass or a carried mass; numbers count all links from the crank outwards."""
     mechanism = pose.mechanism
     places = {
         f"H{number}": (pose.position(mechanism.references[name]) + vectors.get(name, 0.0))[:, 0]

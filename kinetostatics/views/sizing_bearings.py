@@ -15,7 +15,7 @@ ANGLES, MARKS = 1440, 8
 def bearing(found):
     r"""Hodographs of the load on each ring of a bearing in the ring's axes, and its size with the equivalent load.
 
-    A roller has no hodograph, as it turns on from turn to turn.
+    A roller has no hodograph, because its rotation does not repeat.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from .canvas import ACCENT, INK, STEEL, display_unit, finish_axes, panels
 def mount(result):
     """Velocity of a block's centre over the turn, and loads by harmonic, a row for each direction that moves.
 
-    Bars show the load on a fixed frame, and the one that springs and dampers pass to the ground.
+    Bars show the load on a fixed frame, and the load of springs and dampers on the ground.
 
     Parameters
     ----------

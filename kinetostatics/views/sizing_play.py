@@ -7,17 +7,17 @@ from ..sizing.play import ContactLoss
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, display_unit
 
 LARGEST_SHOWN = 1.3
-"""Limit of the force axis over the largest force without play: beyond it the pendulum is no longer the journal."""
+"""Limit of the force axis over the largest force without play: beyond it the pendulum does not describe the journal."""
 LARGEST_INDEX = 10.0
 """Limit of the index axis."""
 NAMED = 0.33
-"""Energy of an impact, relative to the largest, from which it is written."""
+"""Energy of an impact, relative to the largest, above which it is written."""
 
 
 def contact_loss(result, ax=None):
     """Force without play and normal force with it over the crank angle; the index on a second axis.
 
-    Bands show where the journal flies through its play, with the energy of the impact; dotted lines where the force
+    Bands show flights of the journal through its play, with the energy of the impact; dotted lines show where the force
     passes through zero.
 
     Parameters

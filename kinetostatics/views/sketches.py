@@ -10,6 +10,7 @@ import numpy as np
 
 from ..machine.dimensions import Angle, Radius, Span
 from ..numbers import checks, formatting
+from ..numbers.output_units import dimension_name, shown_units
 from ..numbers.paths import places_by_path
 from ..solution.parameters import is_zero
 from ..solution.scene import Scene
@@ -35,6 +36,8 @@ TOO_CLOSE, FARTHER = 1.0, 0.04
 MARGINS = 0.28, 0.2
 """Margins for dimensions beside and above the sketch, relative to its size."""
 NOTES_PER_LINE = 3
+ROUNDING = 1e-9
+"""Place of a mass centre beside the other one of its two up to which it is zero."""
 CLEAR_ENOUGH = 0.85
 """Share of the largest distance between joints and links at which the default crank angle is taken."""
 WIDTH, HEIGHTS = 6.4, (2.4, 5.6)
@@ -111,17 +114,25 @@ def _clearest_angle(solution):
 
 def text_of(path, value, unit):
     """A number as text with its name, "crank_length = 300 mm"."""
-    factor, shown = UNITS[unit]
+    factor, shown = _shown(unit)
     return f"{path} = {formatting.number(factor * value)}{shown}"
+
+
+def _shown(unit):
+    """Factor and unit of numbers on a sketch: those that the user chooses, else the usual ones."""
+    factor, shown = shown_units().of(unit)
+    return (factor, f" {shown}") if dimension_name(unit) in shown_units().chosen else UNITS[unit]
 
 
 def _mass_text(name, link):
     """Mass of a link, and its mass centre if it is not at the reference joint."""
     mass = text_of(f"{name}.mass", link.mass, "kg")
-    along, across = (formatting.number(UNITS["m"][0] * part) for part in link.centre)
+    factor, shown = _shown("m")
+    noise = ROUNDING * factor * max(map(abs, link.centre))
+    along, across = (formatting.number(factor * part, bound=noise) for part in link.centre)
     if along == across == "0":
         return mass
-    return f"{mass}\n{name}.centre = {along if across == '0' else f'({along}, {across})'} mm"
+    return f"{mass}\n{name}.centre = {along if across == '0' else f'({along}, {across})'}{shown}"
 
 
 def _declared(mechanism):
@@ -167,7 +178,7 @@ class _Dimensions:
         return np.reshape(self.pose.position(point), (2, -1))[:, 0]
 
     def place(self, lines, costs):
-        """The line (2, K) of lowest cost that keeps clear of what is drawn; from now on others avoid it."""
+        """The line (2, K) of lowest cost that avoids drawn objects; later lines avoid it."""
         samples = [_dense(line, 0.5 * self.unit) for line in lines]
         close = [
             np.mean(np.min(np.hypot(*(self.occupied[:, None] - dense[..., None])), axis=1) < CLEARANCE * self.unit)

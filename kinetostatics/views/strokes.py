@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..machine.links import Meshing
 from ..mechanics.motion import Motion
 from ..numbers.lazy import cached_property
 from ..numbers.planar import rotate_back
-from .canvas import grouped
+from .canvas import close_curve, grouped
 
 UP = (np.nan, np.nan)
 SPRING = (
@@ -71,8 +72,13 @@ def hatched_line(start, end, width):
 
 THIN_RATIO = 1e-3
 """Width of a link, relative to its length, up to which it is a straight bar."""
+FAR_RATIO = 3.0
+"""Length of a spring, over the extent of the machine, above which only a part beside the machine is drawn."""
+PRESSED = 1e-9
+"""Contact force, relative to the largest, above which a side of a cam carries force."""
+SURFACE_POINTS = 360
 UNCLIPPED_SHARE = 0.9
-"""Share of the poses in which an unbounded reaction has its arrow in full length."""
+"""Fraction of the poses with a full-length arrow of an unbounded reaction."""
 HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
@@ -169,15 +175,9 @@ class Shape:
                 yield Stroke("outline", self._ring(axis, size, LARGE_RING))
                 yield Stroke("outline", self._ring(0.0 * axis, 2.0 * size, LARGE_RING))
         for link, corners in self.corners.items():
-            order = _line_order(corners)
             if corners.shape[1] > 1 and link in links:
-                kind = "plate" if order is None else "bar"
-                if order is None:
-                    x, y = corners - corners.mean(axis=1, keepdims=True)
-                    order = np.argsort(np.arctan2(y, x))
-                else:
-                    order = order[[0, -1]]
-                yield Stroke(kind, _link_points(pose, link, corners[:, order]))
+                kind, outline = _outline(corners)
+                yield Stroke(kind, _link_points(pose, link, outline))
         for slot, ends in self.slots:
             line = _link_points(pose, slot.link, ends)
             parts = self._piston(pose, slot, ends) if slot.rod else (Stroke("slotted", line), Stroke("slot", line))
@@ -257,12 +257,36 @@ class Shape:
             yield Stroke("counterweight", place_sign(SECTOR, sign.start, sign.direction, 2.0 * unit))
         elif sign.end is not None:
             shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
-            yield Stroke(sign.kind, span_sign(shape, sign.start, sign.end, 0.5 * unit))
+            yield Stroke(sign.kind, span_sign(shape, *self._near_part(sign.start, sign.end), 0.5 * unit))
         else:
             shape = {"spiral": SPIRAL, "ring": RING}.get(sign.kind, COUPLE)
             level = np.broadcast_to([[1.0], [0.0]], sign.start.shape)
             kind = "force" if sign.kind == "couple" else "spring"
             yield Stroke(kind, place_sign(shape, sign.start, level, 1.6 * unit, sign.sense))
+
+    def _near_part(self, start, end):
+        """Ends of a line, in poses; if it leads far away, those of a part beside the machine."""
+        if not self._leads_far(start, end):
+            return start, end
+        centre = self.turn.position(next(iter(self.mechanism.joints)))[:, :1]
+        near, far = sorted((start, end), key=lambda place: np.nanmax(np.hypot(*(place - centre))))
+        return near, near + (far - near) * 0.5 * self.size / np.hypot(*(far - near))
+
+    def _leads_far(self, start, end):
+        return np.nanmax(np.hypot(*(end - start))) > FAR_RATIO * self.size
+
+    def ties(self, pose, loads=(), links=None):
+        """Lines from mass centres and points of loads to their link, if they lie off it."""
+        places = [(name, *self.mechanism.links[name].centre) for name in self.heavy]
+        for item in loads:
+            places += [at for at in (getattr(item, "at", None), *getattr(item, "between", ())) if isinstance(at, tuple)]
+        for name, *place in places:
+            if name not in self.corners or (links is not None and name not in links):
+                continue
+            point = np.array([float(np.ravel(part)[0]) for part in place])
+            foot = _nearest_on(_outline(self.corners[name])[1], point)
+            if np.hypot(*(foot - point)) > 0.5 * self.unit:
+                yield Stroke("tie", _link_points(pose, name, np.column_stack([point, foot])))
 
     def grounds(self, loads):
         """Fixed pivots and fixed ends of loads, (2,) each."""
@@ -274,7 +298,8 @@ class Shape:
                 if sign.kind == "shaft":
                     yield sign.start[:, 0]
                 elif sign.kind in ("spring", "damper", "line") and sign.end is not None:
-                    yield from (end[:, 0] for end in (sign.start, sign.end) if not np.ptp(end, axis=-1).any())
+                    ends = () if self._leads_far(sign.start, sign.end) else (sign.start, sign.end)
+                    yield from (end[:, 0] for end in ends if not np.ptp(end, axis=-1).any())
 
 
 def _signs(item, pose):
@@ -309,6 +334,55 @@ def _line_order(points):
     return order if order[-1] else order[::-1]
 
 
+def _outline(corners):
+    """Kind of a link's shape, "bar" or "plate", and its ends or its corners in order (2, K)."""
+    order = _line_order(corners)
+    if order is not None:
+        return "bar", corners[:, order[[0, -1]]]
+    x, y = corners - corners.mean(axis=1, keepdims=True)
+    return "plate", corners[:, np.argsort(np.arctan2(y, x))]
+
+
+def _nearest_on(outline, point):
+    """Point nearest to another one on an outline (2, K); the point itself inside a plate."""
+    sides = np.roll(outline, -1, axis=1) - outline
+    away = point[:, None] - outline
+    if outline.shape[1] > 2 and np.all(left(sides)[0] * away[0] + left(sides)[1] * away[1] >= 0.0):
+        return point
+    squares = np.sum(sides**2, axis=0)
+    feet = outline + sides * np.clip(np.sum(sides * away, axis=0) / np.where(squares > 0.0, squares, 1.0), 0.0, 1.0)
+    return feet[:, np.argmin(np.hypot(*(feet - point[:, None])))]
+
+
+def working_curves(solution):
+    """Working curves of cams whose roller has a known radius: the cam's body, and points (2, K) in its axes.
+
+    A curve for each side on which the roller is pressed: outside a disk, inside a ring.
+    """
+    for group in solution.mechanism.groups:
+        for led in group.led:
+            outward, cam = (-1.0, group.cam) if led.body == FRAME else (1.0, group.disk)
+            friction = solution.friction.acting.get(led.force.replace("_force", ""))
+            radius = group.rollers.get(led.joint) if friction is None else friction.roller_radius
+            if led.flat or radius is None or not hasattr(cam, "profile"):
+                continue
+            force = outward * np.nan_to_num(solution.scalar(led.force))
+            for side, sign in (("disk", 1.0), ("ring", -1.0)):
+                if np.any(sign * force > PRESSED * np.max(np.abs(force))):
+                    try:
+                        made = cam.profile(float(np.ravel(radius)[0]), SURFACE_POINTS, side)
+                    except ParameterError:  # undercut, or no pitch curve around O
+                        continue
+                    yield led.body, close_curve(made.surface)
+
+
+def moving_surfaces(solution, pose):
+    """Working curves of cams that turn with a link, in the poses of a motion."""
+    for body, points in working_curves(solution):
+        if body != FRAME:
+            yield Stroke("surface", _link_points(pose, body, points))
+
+
 def whole_turn(solution):
     """The mechanism over its whole turns, at steps of half a degree."""
     turns = solution.mechanism.turns
@@ -322,7 +396,7 @@ def at_angles(solution, degrees):
 
 
 def moves_alike(solution, other):
-    """Whether two machines look the same in every pose, apart from counterweights and loads."""
+    """Whether two machines look the same in every pose, except for counterweights and loads."""
     made, twin = solution.mechanism, other.mechanism
     if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
         return False
@@ -341,7 +415,7 @@ def load_strokes(solution, angle):
 
 
 def strokes_by_owner(named, angle):
-    """Counterweights and signs of loads in a pose, each with the labels of the machines that have it."""
+    """Counterweights and signs of loads in a pose, each with the labels of its machines."""
     found = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))

@@ -51,7 +51,12 @@ def test_results_are_those_in_si_by_their_factors(command, capsys):
         }
         for key in numbers:
             assert after[key] == pytest.approx(factor * before[key], rel=1e-9)
-    assert "kN m" in printed_by([command, case, *UNITS], capsys)
+    words = printed_by([command, case, *UNITS], capsys)
+    assert "kN m" in words
+    assert " W" not in words
+    if command == "run":
+        drive, of_drive = (variants["variants"]["pumping"]["drive"] for variants in (plain, chosen))
+        assert of_drive["mean_power [kW]"] == pytest.approx(1e-3 * drive["mean_power [W]"])
 
 
 def _pairs(one, other):

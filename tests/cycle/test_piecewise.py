@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.cycle.kinks import design_kinks, has_kinks, sign_changes
+from kinetostatics.cycle.kinks import design_kinks, has_kinks
 from kinetostatics.cycle.piecewise import MAX_UNRESOLVED, Pieces
 from kinetostatics.cycle.piecewise_reductions import MAX_OUTPUT_ERROR, averaged, estimated, resolved, row_of
 from kinetostatics.cycle.reductions import parsed
@@ -250,19 +250,3 @@ def test_friction_of_designs_breaks_as_alone():
     for row, length in zip(both, crank[:, 0], strict=True):
         alone = np.sort(design_kinks(solved((), friction, float(length)))[0][0])
         np.testing.assert_allclose(row[: alone.size], alone, rtol=0, atol=1e-12)
-
-
-# Changes of sign over a period
-
-
-@pytest.mark.parametrize("depth", [1e-4, 1e-6, 1e-9])
-def test_two_changes_between_two_samples_are_found(depth):
-    """What only just passes zero, and turns about, within half a degree."""
-    place = np.array([[2.0012], [3.0034]])
-    _, at = sign_changes(lambda angle: [1.0 - depth - np.cos(angle - place)], TURN, 180)
-    half = np.arccos(1.0 - depth)
-    np.testing.assert_allclose(at, np.column_stack([place - half, place + half]), rtol=0, atol=1e-7)
-
-
-def test_no_function_has_no_changes():
-    assert sign_changes(lambda angle: [], TURN, 720)[1].shape == (1, 0)

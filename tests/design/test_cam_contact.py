@@ -193,14 +193,8 @@ def test_contact_defaults_to_the_scenes_roller():
     assert found.modulus == pytest.approx(1.0 / (0.91 / 210e9 + 0.91 / 110e9), rel=1e-15)
     wide = ks.design.contact(own, width=0.24)
     assert_allclose(wide.pressure, own.contact_pressure / 2, rtol=1e-13)
-    with pytest.raises(ks.ParameterError, match=r"width, poissons_ratio must be told, as .* has no Roller"):
+    with pytest.raises(ks.ParameterError, match="width, poissons_ratio must be given, since the block has no Roller"):
         ks.design.contact(solved(), 0.05, youngs_modulus=210e9)
-
-
-def test_a_follower_is_told_how_its_pressure_is_had():
-    follower = ks.Mechanism("cam drive", ks.Crank(None), (ks.RollerFollower(ks.laws.cosine(0.01, 0.05)),))
-    with pytest.raises(ks.ParameterError, match="give its follower a Roller or Face, then contact_pressure is an"):
-        contact(ks.solve(follower, 0.5, crank_speed=1.0))
 
 
 # What steel of a hardness bears

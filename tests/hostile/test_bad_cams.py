@@ -143,7 +143,7 @@ def test_what_must_be_greater_than_zero_is(field, value):
         (lambda: CAM.base_radius(2.0), "pressure_angle must be less than 1.57"),
         (lambda: ks.design.contact(None, 0.05, 0.06, 210e9, 0.3), "solution must be a Solution"),
         (lambda: ks.design.contact(SAW, 0.05, 0.06, 210e9, 0.3), "solution must be a Solution"),
-        (lambda: ks.design.contact(PLAIN, 0.05, 0.06, 210e9, 0.3), "with a CamRoller, a crank-slider has none"),
+        (lambda: ks.design.contact(PLAIN, 0.05, 0.06, 210e9, 0.3), "contact: a crank-slider has no cam; contact needs"),
         (lambda: ks.design.contact(SOLUTION, 0.05, 0.06, 210e9, 0.7), "poissons_ratio of the roller must be less"),
         (lambda: ks.design.contact(SOLUTION, 0.05, 0.06, 210e9, -0.1), "poissons_ratio of the roller must be at least"),
         (lambda: ks.design.contact(SOLUTION, 0.5, 0.06, 210e9, 0.3), "undercuts the disk"),

@@ -110,7 +110,7 @@ def test_a_point_is_a_pair_of_numbers(make, bad):
         ("groups", "groups must be a tuple"),
         ({"a": 1}, "groups must be a tuple"),
         ((None,), "must be a group: RockerGroup"),
-        ((ks.SliderGroup,), "it is a class, make one of it"),
+        ((ks.SliderGroup,), "it is a class, pass an instance of it"),
         ([ks.Link()], "must be a group: RockerGroup"),
         ((crank_slider(),), "must be a group|lacks"),
     ],
@@ -307,7 +307,7 @@ TABLES = {
     "slider": (lambda: ks.Table([0, 2, 4], [0, 1, 2], slider="slider"), "slider is for a table"),
     "to and fro": (lambda: ks.Table([0, 1, 0.5], [0, 1, 2], over="travel"), "travel must rise"),
     "one row": (lambda: ks.Table([0], [0], over="travel"), "at least 2 rows"),
-    "no rows": (lambda: ks.Table([], []), "holds nothing"),
+    "no rows": (lambda: ks.Table([], []), "which is empty"),
 }
 
 

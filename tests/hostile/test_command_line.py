@@ -158,7 +158,7 @@ def test_options_that_cannot_be_are_refused_in_a_line(name, capsys):
 def test_too_many_angles_name_their_memory(capsys):
     with pytest.raises(SystemExit):
         main(["run", "saw", "--angles", "1000000000"])
-    assert "must be at most 10000000, as 1000000000 would take 1000 GB of memory" in capsys.readouterr().err
+    assert "must be at most 10000000, as 1000000000 would need 1000 GB of memory" in capsys.readouterr().err
 
 
 UNKNOWN = {

@@ -70,7 +70,7 @@ WANTED = {
     "shares": (lambda thing: ks.plots.shares(thing, "O"), SOLUTIONS),
     "chain_unit_motion": (lambda thing: ks.plots.chain_unit_motion(thing, "rocker"), SOLUTIONS),
     "characteristics": (lambda thing: ks.linkage.characteristics({"a": thing}, "a"), f"a {SOLUTIONS}"),
-    "model_ladder": (ks.plots.model_ladder, "needs must be what ks.needs(...) returns"),
+    "model_ladder": (ks.plots.model_ladder, "needs must be a Needs, as from ks.needs(...), got"),
 }
 
 
@@ -144,7 +144,7 @@ CALLS = {
         f"frames {frames!r}": (lambda frames=frames: ks.plots.animation(PLAIN, frames=frames), "frames must be a whole")
         for frames in (0, -1, 2.5, "ten")
     },
-    "no solutions": (lambda: ks.plots.torque({}), "there are no solutions to draw"),
+    "no solutions": (lambda: ks.plots.torque({}), "give at least one solution to draw"),
     "no reactions": (lambda: ks.plots.animation(PLAIN, joints=()), "joints must name at least one"),
     "other direction": (lambda: ks.plots.shaking_force(PLAIN, by="x"), "by is 'x'"),
     "third order": (lambda: ks.plots.chain_unit_motion(FOUR_BAR, "rocker", 3), "order must be 1 or 2, got 3"),

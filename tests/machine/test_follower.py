@@ -298,6 +298,26 @@ def test_it_is_made_for_the_workshop(tmp_path):
         disk.profile(0.2, 90)
 
 
+def test_a_flat_face_touches_the_pitch_curve_itself(tmp_path):
+    """The face at s(phi) is a tangent of the cam: in axes of the crank n . surface reaches s, and nowhere more."""
+    follower = ks.FlatFollower(LAW, ks.Guide.at(0.3))
+    follower.disk.export(tmp_path / "cam.csv", points=720, cutter_radius=0.01)
+    follower.disk.export(tmp_path / "cam.svg")
+    heading, *rows = [row for row in (tmp_path / "cam.csv").read_text().splitlines() if row[0] != "#"]
+    assert heading.startswith("angle [deg], radius [mm], surface_x [mm], surface_y [mm], cutter_x [mm]")
+    assert "pressure" not in heading
+    made = np.array([row.split(", ") for row in rows], dtype=float).T
+    normal = np.array([np.cos(0.3 - ANGLES), np.sin(0.3 - ANGLES)])
+    assert_allclose((normal.T @ made[2:4]).max(axis=1), 1e3 * LAW(ANGLES).position, rtol=1e-5)
+    assert_allclose((normal.T @ made[4:6]).max(axis=1), 1e3 * LAW(ANGLES).position + 10.0, rtol=1e-5)
+    assert "flat face" in (tmp_path / "cam.svg").read_text()
+    for call in (lambda: follower.disk.profile(0.01, 90), lambda: follower.disk.export("cam.csv", roller_radius=0.01)):
+        with pytest.raises(ks.ParameterError, match="flat face, which touches the pitch curve itself"):
+            call()
+    with pytest.raises(ks.ParameterError, match="roller_radius must be"):
+        ks.RollerFollower(LAW).disk.export(tmp_path / "cam.csv")
+
+
 def test_pitch_curve_must_go_around_o():
     small = ks.RollerFollower(ks.laws.cosine(0.1, 0.101), ks.Guide.at(0.0, 0.02))
     with pytest.raises(ks.ParameterError, match="go around O once"):

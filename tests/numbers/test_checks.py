@@ -283,7 +283,7 @@ WRONG = {
     "a unit alone": (UNITS.kg, "kg", "got the unit kilogram without one"),
     "an array": (UNITS.Quantity(np.ones(9), "kg"), "m", r"an array in kilogram, which measures \[mass\]"),
     "one of many": ([UNITS.Quantity(1, "m"), UNITS.Quantity(1, "s")], "m", r"got 1 second, which measures \[time\]"),
-    "a unit that nobody knows": (UNITS.Quantity(1.0, "m"), "", "nothing tells its unit"),
+    "a unit that nobody knows": (UNITS.Quantity(1.0, "m"), "", "its unit is unknown"),
     "a long text": (UNITS.Quantity(10**200, "kg"), "m", r"\.\.\., which measures"),
 }
 

@@ -36,7 +36,7 @@ def test_what_measures_something_else_is_refused(text, unit):
 @every("unit", ["degC", "°C", "degF", "°F", "dB"])
 @every("wanted", ["K", "m"])
 def test_units_with_their_own_zero_are_refused(unit, wanted):
-    with pytest.raises(ValueError, match=f'unit "{unit}" has a zero of its own.* as K, or delta_degC'):
+    with pytest.raises(ValueError, match=f'unit "{unit}" has its own zero point.* as K, or delta_degC'):
         to_si(f"20 {unit}", wanted)
 
 

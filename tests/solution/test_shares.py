@@ -242,7 +242,7 @@ def test_loads_of_the_users_own_have_a_share():
 
 
 def test_own_group_that_needs_mass_is_refused():
-    with pytest.raises(ks.ParameterError, match="fails where nothing but inertia of crank acts"):
+    with pytest.raises(ks.ParameterError, match="fails if only inertia of crank acts"):
         OWN["group"][0].solve(8).shares("O")
 
 

@@ -53,7 +53,7 @@ BAD = {
     "huge fraction": (Fraction(10**400, 3), "too large"),
     "huge integer in a batch": (np.array([[1], [10**400]]), "too large"),
     "1e200": (1e200, "to be computed in double precision"),
-    "nothing in a batch": (np.empty((0, 1)), "holds nothing"),
+    "nothing in a batch": (np.empty((0, 1)), "which is empty"),
     "one value for each angle": (np.ones((1, 72)), "its last axis would be the crank angle"),
     "row": (np.ones(72), "its last axis would be the crank angle"),
     "square": (np.ones((2, 2)), "its last axis would be the crank angle"),

@@ -370,6 +370,9 @@ def test_valve_train_by_newton_and_hertz():
     close(s.balancing_torque, force * rate)
     modulus, radius = 210e9 / (2 * (1 - 0.3**2)), 0.025 + lift + bend
     close(s.contact_pressure, np.sqrt(force * modulus / (pi * 0.012 * radius)))
+    made = np.loadtxt("cam.csv", delimiter=",", comments="#", skiprows=5)[:, 2:4].T  # mm, in axes of the crank
+    face = np.array([np.sin(angle), np.cos(angle)])  # the tappet goes up, the cam turns below it
+    close((face.T @ made).max(axis=1), 1e3 * (0.025 + lift), 1e-5)  # the face touches it
     fine = np.linspace(0, 1, 20001)
     bend = 0.007 / up**2 * (60 * fine - 180 * fine**2 + 120 * fine**3)
     lift = 0.007 * (10 * fine**3 - 15 * fine**4 + 6 * fine**5)

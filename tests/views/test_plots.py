@@ -172,6 +172,14 @@ def test_every_plot_draws_one_machine_or_several(name):
     plt.close("all")
 
 
+def test_numbers_of_a_sketch_are_in_the_units_that_are_chosen(axes):
+    ks.plots.sketch(saw().mechanism, ax=axes, units={"length": "cm", "mass": "t", "angle": "rad"})
+    texts = " ".join(text.get_text() for text in axes.findobj(plt.Text))
+    assert "coupler_length = 80 cm" in texts
+    assert "coupler.centre = 30 cm" in texts
+    assert "slider.mass = 0.06 t" in texts
+
+
 def test_panels_of_several_machines_go_where_they_are_told(axes):
     named = {"plain": solved(), "again": solved()}
     drawn = ks.plots.free_body(named, "coupler", 60)

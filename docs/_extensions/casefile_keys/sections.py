@@ -48,7 +48,7 @@ def named_sections():
 
 
 def reached(models):
-    """Every table that stands in one of these, or in what stands there."""
+    """Every table that these contain, directly or in another table."""
     found, left = set(), list(models)
     while left:
         model = left.pop()

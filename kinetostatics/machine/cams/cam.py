@@ -37,6 +37,8 @@ class Cam:
 
     knots: Any = ()
     """Crank angles at which the second derivative of the radius kinks or jumps, each a `Breakpoint`."""
+    flat: Any = False
+    """Whether its follower has a flat face instead of a roller."""
 
     def polar(self, angle, ray):
         raise TypeError(f"{type(self).__name__} must define polar(angle, ray)")
@@ -73,7 +75,7 @@ class Cam:
         Parameters
         ----------
         roller_radius : float
-            m.
+            m; None for the cam of a flat face, which touches the pitch curve itself.
         angle : int or array
             Crank angles, rad; an int is their count over the turn.
         side : "disk" or "ring"
@@ -126,7 +128,9 @@ class Cam:
 
         return lowest(lambda angle: self.radius(angle)[0], self).value + highest(lacking, self).value
 
-    def export(self, path, *, roller_radius, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False):
+    def export(
+        self, path, *, roller_radius=None, cutter_radius=None, points=3600, units="mm", side="disk", clockwise=False
+    ):
         """Write the cam for the workshop; the suffix selects a 1:1 drawing (.svg), a table (.csv) or .dxf.
 
         Parameters
@@ -134,7 +138,7 @@ class Cam:
         path : path
             The file is written whole or not at all.
         roller_radius : float
-            m.
+            m; None for the cam of a flat face.
         cutter_radius : float, optional
             Radius of a cutter other than the roller, m; its path is then written too.
         points : int

@@ -13,7 +13,7 @@ from ...errors import FileError, MissingLibraryError
 from ...numbers import checks
 from ...numbers.files import write_atomically, write_problem
 from ...numbers.lazy import cached_property
-from .profile import POSITIVE, SIDE_SIGNS, Profile, profile
+from .profile import POSITIVE, SIDE_SIGNS, Profile, flat_face_problem, profile
 
 MM_PER_M = 1000.0
 """Millimetres in a metre; the drawing is in mm, so that it prints one to one."""
@@ -31,13 +31,17 @@ STYLES = {
     "cutter": ("cutter", "cutter", "CUTTER", 3),
 }
 """CSS class, heading of columns, layer and colour of each curve, in the order of drawing."""
+RIM_RATIO = 1.12
+"""Radius of a ring's material, relative to the largest distance of its working curve from the middle."""
+ANCHORS = ("end", "middle", "start")
+"""Where a text stands at its place: left of it, about it, or right of it."""
 SVG_STYLE = (
     "path,line,circle{fill:none;stroke:#222;stroke-width:.25}"
     ".cam{stroke-width:.6;fill:#e8edf2}.hole{stroke-width:.6;fill:#fff}"
     ".pitch{stroke:#c22;stroke-width:.3;stroke-dasharray:8 1.5 1 1.5}"
     ".cutter{stroke:#282;stroke-width:.3;stroke-dasharray:3 1.5}"
     ".axis{stroke-dasharray:10 1.5 1 1.5;stroke-width:.18}.thin{stroke-width:.18}"
-    "text{font-family:sans-serif;fill:#222}.tip{fill:#222;stroke:none}"
+    "text{font-family:sans-serif;fill:#222;paint-order:stroke;stroke:#fff;stroke-width:.6}.tip{fill:#222;stroke:none}"
 )
 
 
@@ -75,8 +79,13 @@ class Sheet:
     def sense(self):
         return "clockwise" if self.clockwise else "counter-clockwise"
 
+    @property
+    def follower(self):
+        """Part that goes around the cam."""
+        return "face" if self.profile.cam.flat else "roller"
+
     def sense_arc(self, degrees, radius):
-        """Points (2, N) of an arc about O in the sense in which the roller goes around."""
+        """Points (2, N) of an arc about O in the sense in which the follower goes around."""
         turn = np.radians((-1.0 if self.clockwise else 1.0) * degrees)
         return radius * np.stack([np.cos(turn), np.sin(turn)])
 
@@ -85,16 +94,18 @@ class Sheet:
         """Lines of notes for the workshop."""
         profile, sharpest, hollow = self.profile, self.profile.smallest_curvature_radius, self.profile.smallest_hollow
         cutter = "" if self.cutter_radius is None else f", cutter radius {self.length_text(self.cutter_radius)}"
+        touch = "flat face" if profile.cam.flat else f"roller radius {self.length_text(profile.roller_radius)}"
         lines = [
-            f"cam for the workshop: {profile.side}, roller radius {self.length_text(profile.roller_radius)}{cutter}, "
-            f"{profile.crank_angle.size} points",
-            f"crank angles counter-clockwise from the zero mark, the +x axis; the roller goes around {self.sense}",
-            f"largest pressure angle {np.degrees(profile.largest_pressure_angle.value):.4g} deg at "
-            f"{np.degrees(profile.largest_pressure_angle.angle):.4g} deg",
+            f"cam for the workshop: {profile.side}, {touch}{cutter}, {profile.crank_angle.size} points",
+            "crank angles counter-clockwise from the zero mark, the +x axis; "
+            f"the {self.follower} goes around {self.sense}",
             "sharpest part of the working curve: "
             + ("none convex" if sharpest is None else f"radius {self.length_text(sharpest.value)}")
             + ("" if hollow is None else f"; tightest hollow: radius {self.length_text(-hollow.value)}"),
         ]
+        if not profile.cam.flat:
+            steepest, angle = map(np.degrees, profile.largest_pressure_angle)
+            lines.insert(2, f"largest pressure angle {steepest:.4g} deg at {angle:.4g} deg")
         error = getattr(profile.cam, "force_error", None)
         if error is not None:
             lines.append(f"from a measured table: forces are uncertain by {error:.2g} of the largest")
@@ -118,6 +129,14 @@ class SvgDrawing:
         self.roller = MM_PER_M * sheet.profile.roller_radius
         every = np.concatenate(list(self.curves.values()), axis=1)
         self.low, self.high = every.min(axis=1) - self.roller, every.max(axis=1) + self.roller
+        self.rim = None  # centre and radius of the material of a ring
+        if sheet.profile.side == "ring":
+            middle = 0.5 * (every.min(axis=1) + every.max(axis=1))
+            self.rim = middle, RIM_RATIO * float(np.max(np.hypot(*(self.curves["surface"].T - middle).T)))
+            self.low, self.high = (
+                np.minimum(self.low, middle - self.rim[1]),
+                np.maximum(self.high, middle + self.rim[1]),
+            )
         self.size = max(2.5, float(np.max(self.high - self.low)) / 110.0)
 
     def text(self):
@@ -133,7 +152,7 @@ class SvgDrawing:
         self._line((x, bottom), (x + 100.0, bottom))
         for end in (x, x + 100.0):
             self._line((end, bottom - size / 2), (end, bottom + size / 2))
-        right = max(self.high[0] + 14 * size, x + 0.55 * size * max(map(len, notes)))
+        right = max(self.high[0] + 20 * size, x + 0.55 * size * max(map(len, notes)))
         left, up = x - 2 * size, self.high[1] + 8 * size
         width, height = right - x + 4 * size, up - bottom + 3 * size
         header = [
@@ -147,12 +166,12 @@ class SvgDrawing:
 
     def _draw_cam(self):
         """The curves, with the material of a disk inside its working curve, of a ring outside; axes, roller, sense."""
-        size, ring = self.size, self.sheet.profile.side == "ring"
-        if ring:
-            self._circle("cam", (0, 0), 1.05 * np.max(np.hypot(*self.curves["surface"])))
+        size = self.size
+        if self.rim:
+            self._circle("cam", *self.rim)
         for name, (kind, *_) in STYLES.items():
             if name in self.curves:
-                kind = "hole" if name == "surface" and ring else kind
+                kind = "hole" if name == "surface" and self.rim else kind
                 self.items.append(f'<path class="{kind}" id="{name}" d="{_path(self.curves[name])}"/>')
 
         for axis in (0, 1):
@@ -165,15 +184,27 @@ class SvgDrawing:
         along, outer = start / reach, reach + self.roller
         self._line(outer * along, (outer + 5 * size) * along)
         self._words(outer * along + [0.2 * size, -1.3 * size], "0° zero mark")
-        arc = self.sheet.sense_arc(np.linspace(20.0, 100.0, 41), 0.45 * float(self.radius.min()))
+        self._draw_sense()
+
+    def _draw_sense(self):
+        """The sense in which the roller goes around, in the middle between the radii with dimensions."""
+        size, angle = self.size, self.sheet.profile.crank_angle
+        ways = np.sort(np.mod([0.0, angle[np.argmin(self.radius)], angle[np.argmax(self.radius)]], 2 * np.pi))
+        gaps = np.diff(np.append(ways, ways[0] + 2 * np.pi))
+        middle = ways[np.argmax(gaps)] + 0.5 * gaps.max()
+        half = min(40.0, np.degrees(0.35 * gaps.max()))
+        along = np.array([np.cos(middle), np.sin(middle)])
+        x, y = self.sheet.sense_arc(np.linspace(-half, half, 41), 0.45 * float(self.radius.min()))
+        arc = np.stack([along[0] * x - along[1] * y, along[1] * x + along[0] * y])
         self.items.append(f'<path id="sense" d="{_path(arc, closed=False)}"/>')
         self._tip(arc[:, -1], arc[:, -1] - arc[:, -2])
-        self._words(arc[:, 20] + [size, 0.0], f"roller goes {self.sheet.sense}")
+        place = arc[:, 20] + size * (along + [0.0, min(along[1], 0.0)])
+        self._words(place, f"{self.sheet.follower} goes {self.sheet.sense}", ANCHORS[int(np.rint(along[0])) + 1])
 
     def _draw_dimensions(self):
         """Width and height of the working curve, largest and smallest radius, diameter of the roller."""
         size, sheet, pitch = self.size, self.sheet, self.curves["pitch"]
-        base, side = self.low[1] - 5 * size, self.high[0] + 7 * size
+        base, side = self.low[1] - 5 * size, self.high[0] + 12 * size
         for axis, level, beyond in ((0, base, base - size), (1, side, side + size)):
             edges = self.curves["surface"][axis].min(), self.curves["surface"][axis].max()
             for edge in edges:
@@ -185,17 +216,19 @@ class SvgDrawing:
             place = start + (0.8 if axis else 0.5) * (stop - start)  # clear of the zero mark
             place[1 - axis] += (0.6 if axis else 0.5) * size
             self._words(place, sheet.length_text((edges[1] - edges[0]) / MM_PER_M))
-        for place, name, share, lower in (
-            (np.argmax(self.radius), "largest", 0.3, 0.6),
-            (np.argmin(self.radius), "smallest", 0.45, 2.2),
+        for place, name, above in (
+            (np.argmax(self.radius), "largest", 0.5),
+            (np.argmin(self.radius), "smallest", -1.4),
         ):
             end = pitch[:, place]
             self._line((0.0, 0.0), end)
             self._tip(end, end)
             degrees = np.degrees(sheet.profile.crank_angle[place])
             text = f"{name} R {sheet.length_text(self.radius[place] / MM_PER_M)} at {degrees:.4g}°"
-            self._words(share * end + [0.0, lower * size], text)
-        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}"
+            along = end / np.hypot(*end) * (1.0 if end[0] >= 0.0 else -1.0)  # read from the left
+            place = 0.55 * end + above * size * np.array([-along[1], along[0]])
+            self._words(place, text, "middle", np.degrees(np.arctan2(along[1], along[0])))
+        text = f"roller ⌀ {sheet.length_text(2 * self.roller / MM_PER_M)}" if self.roller else "flat face"
         self._words(pitch[:, 0] + np.array([0.75, 0.8]) * self.roller, text)
 
     def _line(self, start, stop, kind="thin"):
@@ -210,9 +243,13 @@ class SvgDrawing:
         left, tip, right = arrow_head(point, direction, self.size, 5)
         self.items.append(f'<path class="tip" d="{_path(np.stack([tip, left, right], axis=1))}"/>')
 
-    def _words(self, place, text):
+    def _words(self, place, text, anchor="start", turned=0.0):
+        """A text from, about or up to a place, turned counter-clockwise by an angle in degrees."""
         x, y = place
-        self.items.append(f'<text x="{x:.6g}" y="{-y:.6g}" font-size="{self.size:.3g}">{escape(text)}</text>')
+        at = f'x="{x:.6g}" y="{-y:.6g}" font-size="{self.size:.3g}"'
+        at += "" if anchor == "start" else f' text-anchor="{anchor}"'
+        at += f' transform="rotate({-turned:.6g} {x:.6g} {-y:.6g})"' if turned else ""
+        self.items.append(f"<text {at}>{escape(text)}</text>")
 
 
 def _path(points, closed=True):
@@ -237,9 +274,11 @@ def _to_csv(sheet, path):
     add("angle", np.degrees(sheet.profile.crank_angle), "deg", MORE_DECIMALS)
     add("radius", sheet.in_unit(sheet.radius), more=MORE_DECIMALS)
     for name, points in sheet.paths.items():
-        for axis, part in zip("xy", sheet.in_unit(points), strict=True):
-            add(f"{STYLES[name][1]}_{axis}", part)
-    add("pressure_angle", np.degrees(sheet.profile.pressure_angle), "deg")
+        if name != "pitch" or not sheet.profile.cam.flat:  # a flat face touches it
+            for axis, part in zip("xy", sheet.in_unit(points), strict=True):
+                add(f"{STYLES[name][1]}_{axis}", part)
+    if not sheet.profile.cam.flat:
+        add("pressure_angle", np.degrees(sheet.profile.pressure_angle), "deg")
     add("curvature_radius", sheet.in_unit(sheet.profile.curvature_radius))
     rows = zip(*columns.values(), strict=True)
     lines = [*(f"# {note}" for note in sheet.notes), ", ".join(columns), *map(", ".join, rows)]
@@ -285,7 +324,8 @@ WRITERS = {".csv": _to_csv, ".dxf": _to_dxf, ".svg": _to_svg}
 
 def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwise):
     """Write a cam to a file; ``cam.export`` documents the parameters."""
-    radii = {"roller_radius": roller_radius} | ({} if cutter_radius is None else {"cutter_radius": cutter_radius})
+    radii = {} if cam.flat else {"roller_radius": roller_radius}
+    radii |= {} if cutter_radius is None else {"cutter_radius": cutter_radius}
     problem = checks.count("points", points)
     found = checks.single_numbers(
         "cam export",
@@ -293,13 +333,14 @@ def export(cam, path, roller_radius, cutter_radius, points, units, side, clockwi
         checks.choice("units", units, tuple(UNITS)),
         checks.choice("side", side, tuple(SIDE_SIGNS)),
         checks.truth("clockwise", clockwise),
+        flat_face_problem(cam, roller_radius),
         None if isinstance(path, str | Path) else f"path must be the name of a file, got {checks.shown(path)}",
         **{name: (radius, "m", POSITIVE) for name, radius in radii.items()},
     )
     problem, ending = write_problem(path, endings=tuple(WRITERS)), Path(path).suffix.lower()
     if problem or ending not in WRITERS:
         raise FileError(problem or checks.choice(f"{path}: the ending", Path(path).suffix, tuple(WRITERS)))
-    working = profile(cam, found["roller_radius"], int(points), side)
+    working = profile(cam, found.get("roller_radius"), int(points), side)
     sheet = Sheet(working, found.get("cutter_radius"), units, clockwise)
     with write_atomically(path) as temporary:
         WRITERS[ending](sheet, temporary)

@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import HintWarning, ParameterError
 from ...numbers import checks
 from ...numbers.brackets import find_minima
-from ...numbers.formatting import repr_with_units
+from ...numbers.formatting import with_units
 from ...numbers.lazy import cached_property
 from ...numbers.planar import polar_curvature
 from .. import plausibility
@@ -33,6 +33,7 @@ CUT_TOLERANCE = 1e-3
 """Depth to which a roller may cut into another part of the cam, relative to its radius: error of the chain."""
 
 
+@with_units(angle="rad")
 class Peak(NamedTuple):
     """Largest or smallest value over the turn, and its crank angle, rad.
 
@@ -47,8 +48,6 @@ class Peak(NamedTuple):
 
     value: float
     angle: float
-
-    __repr__ = repr_with_units(angle="rad")
 
 
 def sampled_angles(cam):
@@ -85,7 +84,7 @@ class Profile:
     ----------
     cam : Cam
     roller_radius : float
-        m.
+        m; 0 for a flat face.
     crank_angle : array (N,)
         rad.
     side : "disk" or "ring"
@@ -214,11 +213,18 @@ def _roller_side_curvature(cam, angle, side):
     return -SIDE_SIGNS[side] * curvature(cam, angle)
 
 
+def flat_face_problem(cam, roller_radius):
+    """Sentence if a roller is given for the cam of a flat face."""
+    if cam.flat and roller_radius is not None:
+        return "its follower has a flat face, which touches the pitch curve itself; leave roller_radius out"
+    return None
+
+
 def profile(cam, roller_radius, angle, side="disk"):
     """Working curve of a cam, a `Profile`; ``cam.profile`` documents the parameters."""
-    radius = checks.single_numbers(
-        "cam profile", checks.choice("side", side, tuple(SIDE_SIGNS)), roller_radius=(roller_radius, "m", POSITIVE)
-    )["roller_radius"]
+    problems = checks.choice("side", side, tuple(SIDE_SIGNS)), flat_face_problem(cam, roller_radius)
+    rules = {} if cam.flat else {"roller_radius": (roller_radius, "m", POSITIVE)}
+    radius = checks.single_numbers("cam profile", *problems, **rules).get("roller_radius", 0.0)
     if isinstance(angle, int | np.integer) and not isinstance(angle, bool):
         checks.require("cam profile", checks.count("angle", angle, size=checks.BYTES_PER_ANGLE))
         angle = np.linspace(0.0, TURN, int(angle), endpoint=False)

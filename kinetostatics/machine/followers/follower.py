@@ -41,6 +41,11 @@ class DiskCam(Cam):
 
     TABULATED = True
 
+    @property
+    def flat(self):
+        """Whether the follower has a flat face."""
+        return self.follower.BODY == "face"
+
     def curve(self, phi):
         """Roller centre on the cam at crank angles, and its first two derivatives, complex, m."""
         phi = np.asarray(checks.to_plain_named("cam", "crank angle", phi, "rad"), dtype=float)

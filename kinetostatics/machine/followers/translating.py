@@ -187,8 +187,8 @@ class RollerFollower(GuidedFollower):
 
     def pitch(self, law):
         """Roller centre and two derivatives at the crank angles of a law's values, complex."""
-        along = complex(*self.guide.direction)
-        return along * (law.position + 1j * self.guide.guide_offset), along * law.velocity, along * law.acceleration
+        along, (position, first, second, _) = complex(*self.guide.direction), law
+        return along * (position + 1j * self.guide.guide_offset), along * first, along * second
 
     def _across(self, placement):
         """Normal of the pitch curve, along the guide and to its left, not of length 1."""

@@ -108,7 +108,7 @@ class Branch:
         Raises
         ------
         ParameterError
-            It hangs on no crank pin, a length is not known, or designs are of several kinds.
+            It is not on a crank pin, a length is unknown, or designs are of several kinds.
         """
         if throw is None and self.IS_ON_ROCKERS:
             return self.passage  # `beside` finds it

@@ -10,13 +10,13 @@ from contextlib import suppress
 import numpy as np
 
 from ...numbers import checks
+from ...numbers.arithmetic import TURN
 from ...numbers.brackets import find_roots
 from ...numbers.parameter_tree import replace_unchecked
 from ..crank import Crank
 from ..kinematic_state import Throw, place
 from .branches import SEVERAL_DESIGNS
 
-TURN = 2.0 * np.pi
 ANGLES = np.linspace(0.0, TURN, 721)
 """Crank angles at which the rocker is followed, rad."""
 MAX_REMAINDER = 165.0

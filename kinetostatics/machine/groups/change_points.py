@@ -82,7 +82,7 @@ TERMS = {
     "sine": ("s", "sine of that"),
     "height": ("w", "root of the closure"),
     "square": ("D", "square of the distance of the joint from the pivot, or of the reach"),
-    "turning": ("q", "rate of the line from the joint to the pivot, or of what is mirrored in it"),
+    "turning": ("q", "rate of the line from the joint to the pivot, or of the links mirrored in it"),
     "rate": ("z", "rate of the links besides"),
 }
 """Symbols and meanings of kernel lines in hand calculations."""

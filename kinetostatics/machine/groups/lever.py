@@ -213,7 +213,7 @@ class LeverGroup(RPRGroup):
     "block_position" (m) is the coordinate of the block along the slot, from the foot of the pivot; negative where the
     slot points away from the block.
 
-    Further groups hang on a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
+    Attach further groups to a `Pin` of the lever: ``ks.Pin(on="lever", at=(0.9, 0.0))``.
 
     Examples
     --------
@@ -278,7 +278,7 @@ class CylinderGroup(RPRGroup):
     """Rod on joint `on`, sliding in a cylinder about the fixed joint `pivot_name`: swinging cylinder.
 
     The pin must not meet the pivot. A fluid's pressure is a `PointForce` between places on rod and cylinder, as
-    ``between=(("rod", along, 0.0), "O2")``; the joint `on` itself belongs to what the rod hangs on.
+    ``between=(("rod", along, 0.0), "O2")``; the joint `on` itself belongs to another link.
 
     Parameters
     ----------

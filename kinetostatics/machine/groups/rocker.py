@@ -136,7 +136,7 @@ def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
 
 
 class TwoJoints:
-    """Rule of the two joints that a dyad hangs on."""
+    """Rule of the two joints of a dyad."""
 
     rule = checks.Name()
 
@@ -368,7 +368,7 @@ class Dyad(RRRGroup):
     assembly : +1 or -1
         +1: the pin to the left of the direction from the first joint to the second.
     dyad1, dyad2 : Link
-        Reference joints are those they hang on, directions run from there to the pin.
+        Reference joints are the joints in `on`; directions run from there to the pin.
     label : str
         Appended to the names of links and forces of a second dyad in one mechanism.
     plane : float or array, optional
@@ -381,7 +381,7 @@ class Dyad(RRRGroup):
 
     Notes
     -----
-    Reactions, vectors in N: "dyad1_B" on the first link from what carries B (the name of the joint it hangs on),
+    Reactions, vectors in N: "dyad1_B" on the first link, from the link that carries B (its joint in `on`),
     "dyad2_C" on the second likewise, and `pin`, of the first link on the second.
 
     Examples

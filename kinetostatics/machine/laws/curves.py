@@ -11,9 +11,10 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from ...numbers.formatting import repr_with_units
+from ...numbers.formatting import with_units
 
 
+@with_units()
 class Motion(NamedTuple):
     """Position and three derivatives by the crank angle, m, m/rad, m/rad2, m/rad3; pure numbers for a rise.
 
@@ -33,8 +34,6 @@ class Motion(NamedTuple):
     velocity: np.ndarray
     acceleration: np.ndarray
     jerk: np.ndarray
-
-    __repr__ = repr_with_units()
 
 
 class Coefficients(NamedTuple):

@@ -12,10 +12,10 @@ from numpy.polynomial import chebyshev
 
 from ...errors import ParameterError
 from ...numbers import checks
+from ...numbers.arithmetic import TURN
 from ...numbers.panels import Panels
 from .curves import Motion
 
-TURN = 2 * np.pi
 PLACES = 0.5 + 0.5 * chebyshev.chebpts1(24)
 """Places between two knots, relative to their distance, at which a law is sampled: Chebyshev points."""
 TEST_STEPS = 720

@@ -88,7 +88,7 @@ class TurnTable:
             self._warn(
                 f"the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the {scatter:.3g} m by which "
                 f"the {self.VALUE} values scatter; "
-                + ("what is no noise is smoothed away too" if more else "noise is left in the curve"),
+                + ("true features are smoothed away too" if more else "noise is left in the curve"),
                 stacklevel=5,
             )
 

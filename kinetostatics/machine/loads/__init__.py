@@ -23,7 +23,7 @@ from .load import (
 from .points import Force, PointDamper, PointForce, PointSpring
 from .slider import ProcessForce, Spring, spring_masses
 from .table import DEAD_CENTRES, Table
-from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, pad_rows, period_of
+from .table_pieces import KINK_TOLERANCE, MAX_TURNS, TURN, WholeTurns, period_of
 from .torsion import Torque, TorsionDamper, TorsionSpring
 from .work import Mowing, Sawing
 

@@ -6,8 +6,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ...errors import NotGivenError, ParameterError
-from ...numbers.arithmetic import is_foreign_array
-from .table_pieces import TURN, sign_changes
+from ...numbers.arithmetic import TURN, is_foreign_array
+from .table_pieces import turning_points
 
 CENTRED = 1e-9
 """Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
@@ -38,8 +38,8 @@ def _dead_centres(mechanism, slider):
     with np.errstate(invalid="ignore", divide="ignore"):
         first = travel(np.zeros(1)).position
         if is_foreign_array(first) or first.dtype == object:
-            raise NotGivenError(f"the stroke of {slider!r} takes plain lengths, on which its dead centres are computed")
-        _, rate, stops = sign_changes(lambda angle: travel(angle).first, mechanism.turns)
+            raise NotGivenError(f"the stroke of {slider!r} needs plain lengths, on which its dead centres are computed")
+        _, stops, _, (rate,) = turning_points(lambda angle: travel(angle).first, mechanism.turns)
         closes, changes = ~np.isnan(rate).any(axis=-1), np.sum(~np.isnan(stops), axis=-1)
         wrong = closes & (changes != 2)
         if wrong.any():

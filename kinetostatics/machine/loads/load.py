@@ -91,6 +91,7 @@ class Load(checks.Checked, Batched):
     REFUSES: ClassVar[bool] = False
     DISSIPATES: ClassVar[bool] = False
     STROKE: ClassVar[bool] = False
+    jumps: Any = None
 
     @property
     def value_now(self) -> Any:
@@ -217,7 +218,7 @@ def value_rule(unit):
 
 def kink_sources(loads):
     """List of loads, values and jumps that declare kinks."""
-    parts = (part for item in loads for part in (item, value_of(item), getattr(item, "jumps", None)))
+    parts = (part for item in loads for part in (item, value_of(item), item.jumps if isinstance(item, Load) else None))
     return [part for part in parts if hasattr(part, "kinks")]
 
 

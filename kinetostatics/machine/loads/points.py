@@ -151,7 +151,7 @@ TERMS = {
 
 
 class ForceRule(checks.OrFunction):
-    """Rule of the value of a force; the message for two components says what to write."""
+    """Rule of the value of a force; the message for two components gives the right form."""
 
     def check(self, value, field=""):
         if isinstance(value, list | tuple) and len(value) == 2 and all(type(part) in (int, float) for part in value):
@@ -188,7 +188,7 @@ class Force(PlacedLoad):
     Parameters
     ----------
     value : float, array, Table or function
-        N; an array has one value for each crank angle, a function takes the `Motion` and returns such values.
+        N; an array has one value for each crank angle, a function takes the `Motion` and returns values of this shape.
     at : point
         Joint such as "B", a place on a link, ("coupler", along, across), in m and in the axes of mass centres, or a
         fixed point (x, y), where the frame takes the force. A joint stands for the link that owns it
@@ -231,7 +231,7 @@ class Force(PlacedLoad):
         return f"Force at {place_text(self.at)}"
 
     def misplaced(self, mechanism):
-        """Sentences if the mechanism has no such joint or link."""
+        """Sentences on unknown joints or links."""
         yield place_problem("Force", "at", self.at, mechanism)
         if self.along is not None:
             yield checks.choice("Force: along", self.along, tuple(mechanism.links))
@@ -273,7 +273,7 @@ class PointLoad(PlacedLoad):
         return f"{type(self).__name__} between {' and '.join(map(place_text, self.between))}"
 
     def misplaced(self, mechanism):
-        """Sentences if there are no such points, or if one link carries both."""
+        """Sentences on unknown points, or if one link carries both."""
         owner = type(self).__name__
         wrong = [place_problem(owner, f"between {n}", place, mechanism) for n, place in enumerate(self.between, 1)]
         yield from wrong
@@ -445,7 +445,7 @@ class PointDamper(PointLoad):
     Raises
     ------
     ParameterError
-        As for `PointForce`, but for points that meet.
+        As for `PointForce`, except that points may meet.
 
     Examples
     --------

@@ -68,7 +68,7 @@ class SliderLoad(Load):
         return Support(rotate((minus(None, self.push(motion)), 0.0), line.direction), point)
 
     def misplaced(self, mechanism):
-        """Sentence if the mechanism has no such slider."""
+        """Sentence on an unknown slider."""
         problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
         if problem and not mechanism.guides:
             problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
@@ -98,8 +98,8 @@ class Spring(SliderLoad):
     Raises
     ------
     ParameterError
-        The stiffness or mass is negative, or a value is not a finite number; when a scene is made: there is no such
-        slider.
+        The stiffness or mass is negative, or a value is not a finite number; when a scene is made, the
+        slider is unknown.
 
     Notes
     -----

@@ -276,7 +276,7 @@ class Table:
         if self.slider is not None:
             yield checks.choice(f"{title}: slider", self.slider, sliders)
         elif len(sliders) != 1:
-            there = f"sliders {', '.join(map(repr, sliders))}: say which, slider=..." if sliders else "no slider"
+            there = f"sliders {', '.join(map(repr, sliders))}: choose one, slider=..." if sliders else "no slider"
             yield f"{title}: the mechanism has {there}"
 
     def __call__(self, motion):

@@ -1,4 +1,4 @@
-"""Pieces of a table: checks of its rows, look-up, kinks, crossings, and rounding errors of what is read.
+"""Pieces of a table: checks of its rows, look-up, kinks, crossings, and rounding errors of its values.
 
 A table is linear between its rows: piece k gives y_k + (x - x_k) (y_k+1 - y_k) / (x_k+1 - x_k). It has a kink at each
 row, but rows that follow a smooth curve within `KINK_TOLERANCE` count as none. A table over the travel of a slider has
@@ -17,10 +17,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ...numbers import checks
-from ...numbers.arithmetic import UNIT_ROUNDOFF
+from ...numbers.arithmetic import TURN, UNIT_ROUNDOFF
 from ...numbers.brackets import find_roots
+from ...numbers.sign_changes import SAMPLE_OFFSET, pad_rows, sign_changes
 
-TURN = 2 * math.pi
 MAX_TURNS = 100
 """Largest number of turns in a period."""
 
@@ -165,7 +165,7 @@ KINK_TOLERANCE = 1e-5
 SMOOTH_DEGREE = 5
 """Degree of the polynomials that count as smooth: lower than that of the polynomials of reductions over a turn."""
 SMOOTH_STRETCHES = 32
-"""Number of such polynomials in half a turn, or in a table over travel, that make a smooth curve."""
+"""Number of polynomials in half a turn, or in a table over travel, of a smooth curve."""
 CHEBYSHEV_POINTS = chebyshev.chebpts1(32)
 """Places on a stretch, from -1 to 1, at which the polynomial is fitted."""
 CHEBYSHEV_FIT = np.linalg.pinv(chebyshev.chebvander(CHEBYSHEV_POINTS, SMOOTH_DEGREE))
@@ -237,8 +237,6 @@ class Curve(NamedTuple):
 
 STOP_SAMPLES = 720
 """Crank angles a turn between which a slider stops at most once."""
-SAMPLE_OFFSET = 1e-3
-"""First of these crank angles, rad: none meets a dead centre."""
 
 
 def stops_and_crossings(motion, slider, levels, origin=0.0, unit=1.0):
@@ -249,6 +247,7 @@ def stops_and_crossings(motion, slider, levels, origin=0.0, unit=1.0):
     Between two stops a slider passes each level once, so stops come first and no crossing near a stop is missed.
     """
     turns = motion.mechanism.turns
+    period = TURN * turns
 
     def travel(angle):
         return motion.mechanism.place(angle).travels[slider]
@@ -257,8 +256,9 @@ def stops_and_crossings(motion, slider, levels, origin=0.0, unit=1.0):
         return (travel(angle).position - origin) / unit
 
     with np.errstate(invalid="ignore", divide="ignore"):
-        grid, rate, stops = sign_changes(lambda angle: travel(angle).first, turns)
-        knots = np.sort(np.column_stack([np.broadcast_to(grid, rate.shape), stops]), axis=1)
+        _, stops, grid, (rate,) = turning_points(lambda angle: travel(angle).first, turns)
+        ahead = stops + period * (stops < SAMPLE_OFFSET)  # within the grid
+        knots = np.sort(np.column_stack([np.broadcast_to(grid, rate.shape), ahead]), axis=1)
 
         # each crossing by the levels between the coordinates at both knots
         knots, there = np.broadcast_arrays(knots, height(knots))
@@ -272,33 +272,16 @@ def stops_and_crossings(motion, slider, levels, origin=0.0, unit=1.0):
         design, place = np.repeat(design, number), np.repeat(place, number)
         low, high, level = pad_rows(design, len(knots), knots[design, place], knots[design, place + 1], level)
         passed = _roots(lambda angle: height(angle) - level, low, high)
-    return np.mod(stops, TURN * turns), np.mod(passed, TURN * turns)
+    return stops, np.mod(passed, period)
 
 
-def sign_changes(function, turns):
-    """Crank angles of a grid (1, N), values (..., N) there, and angles (..., E) at which they change sign.
-
-    The grid spans the period of `turns` turns; rows end with NaN where a design has fewer changes than another.
-    """
-    grid = (SAMPLE_OFFSET + np.linspace(0.0, TURN * turns, STOP_SAMPLES * turns + 1))[None]
-    values = np.broadcast_arrays(*np.atleast_2d(function(grid), grid))[0]
-    turning = (np.signbit(values[..., :-1]) != np.signbit(values[..., 1:])) & ~np.isnan(np.diff(values))
-    *designs, count = turning.shape
-    design, place = np.nonzero(turning.reshape(-1, count))
-    low, high = pad_rows(design, np.prod(designs), grid[0, place], grid[0, place + 1])
-    return grid, values, _roots(function, *(part.reshape(*designs, part.shape[-1]) for part in (low, high)))
-
-
-def pad_rows(design, count, *values):
-    """Values listed design by design as arrays (count, K), K the most of one design; NaN pads the rows."""
-    number = np.bincount(design, minlength=count)
-    rows = np.full((len(values), count, number.max(initial=0)), np.nan)
-    rows[:, design, np.arange(design.size) - (np.cumsum(number) - number)[design]] = values
-    return rows
+def turning_points(rate, turns):
+    """Sign changes of a rate by the crank angle over the period of `turns` turns, `SignChanges`."""
+    return sign_changes(lambda angle: [rate(angle)], TURN * turns, STOP_SAMPLES * turns)
 
 
 def _roots(function, low, high):
-    """Angles between `low` and `high`, (designs, K), at which a function of such angles is 0; NaN where they are."""
+    """Angles between `low` and `high`, (designs, K), at which a function of angles is 0; NaN where both are."""
 
     def values(angle, places):
         everywhere = low.copy()

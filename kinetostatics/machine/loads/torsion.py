@@ -17,7 +17,7 @@ from ..group import FRAME
 from ..links import Wrench, present
 from ..supports import Support
 from .load import Jumps, Load, Symbol, unknown_sense, value_rule
-from .table_pieces import TURN, sign_changes
+from .table_pieces import TURN, turning_points
 
 ANGLE_SAMPLES = 720
 """Crank angles a turn at which the angle of a torsion spring is tested for half a turn."""
@@ -48,7 +48,7 @@ class Couple(Load):
         raise NotImplementedError
 
     def misplaced(self, mechanism):
-        """Sentences if there are no such links, or if both are the same."""
+        """Sentences on unknown links, or if both are the same."""
         owner = type(self).__name__
         yield checks.choice(f"{owner}: on", self.on, tuple(mechanism.links))
         if self.against is not None:
@@ -93,7 +93,7 @@ class Torque(Couple):
     ----------
     value : float, array, Table or function
         N m, counter-clockwise on the link; an array has one value for each crank angle, a function takes the `Motion`
-        and returns such values.
+        and returns values of this shape.
     opposing : bool
         Coulomb drag, as of a brake, a seal or a chain: the torque has the constant magnitude `value`, not negative,
         against the angular velocity of `on` relative to `against`. It jumps where that velocity changes its sign. At
@@ -107,9 +107,9 @@ class Torque(Couple):
     Raises
     ------
     ParameterError
-        A value is not a finite number, or an opposing torque is no number or negative; when a scene is made: there is
-        no such link, both are the same, or an opposing torque acts where nothing turns; when it is solved: an opposing
-        torque acts at rest, in an unknown sense.
+        A value is not a finite number, or an opposing torque is no number or negative. When a scene is made: a link is
+        unknown, both are the same, or an opposing torque acts on links without relative rotation. When it is solved: an
+        opposing torque acts at rest, in an unknown sense.
 
     Examples
     --------
@@ -167,8 +167,7 @@ class Torque(Couple):
     def _reversals(self, motion):
         mechanism = motion.mechanism
         with np.errstate(invalid="ignore", divide="ignore"):
-            *_, found = sign_changes(lambda angle: number_or_zero(self._ratio(mechanism.place(angle))), mechanism.turns)
-        return np.mod(found, TURN * mechanism.turns)
+            return turning_points(lambda at: number_or_zero(self._ratio(mechanism.place(at))), mechanism.turns).angle
 
 
 @dataclass(frozen=True, eq=False)

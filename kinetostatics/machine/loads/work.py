@@ -109,9 +109,9 @@ class Sawing(StrokeForce):
     Raises
     ------
     ParameterError
-        A value is no finite number, or negative (except thrust and overhang); a function without a pitch; when a
-        scene is made: there is no such slider; when it is solved, the slider does not reciprocate once in a turn,
-        dwells, or stands still in an unknown sense.
+        A value is no finite number, or negative (except thrust and overhang), or a function has no pitch. When a scene
+        is made: the slider is unknown. When it is solved: the slider does not reciprocate once in a turn, dwells, or is
+        at rest in an unknown sense.
 
     Notes
     -----

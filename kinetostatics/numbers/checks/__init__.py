@@ -1,6 +1,6 @@
 """Checks of a user's values: kernels trust a value that has passed here. It may import errors and numbers.
 
-``rules`` say what a value must be, ``values`` recognise and convert values, ``messages`` word the faults. A `Checked`
+``rules`` define valid values, ``values`` recognise and convert values, ``messages`` describe the faults. A `Checked`
 dataclass declares a table of rules, field -> rule. All faults of an item are reported in one `ParameterError`. The item
 keeps floats and read-only copies of arrays; traced JAX numbers and `arb` enclosures pass unchanged.
 """

@@ -1,6 +1,7 @@
 """Faults of values as sentences, the one error that lists them, and "did you mean" by synonyms and spelling.
 
-A function named after a kind of value (`count`, `truth`, `mapping` ...) returns the fault of such a value, or None.
+A function named after a kind of value (`count`, `truth`, `mapping` ...) returns the fault of a value of this kind, or
+None.
 """
 
 import numbers
@@ -134,7 +135,7 @@ def broadcast_problem(**shapes):
 MAX_TABLE_MEMORY = 10_000_000_000
 """Largest size of a table of angles or designs, bytes."""
 MAX_COUNT = 10**15
-"""Largest whole number of whatever needs no table."""
+"""Largest whole number where no table is needed."""
 BYTES_PER_ANGLE = 1000
 """Size of the results at a crank angle with all forces in a table."""
 
@@ -146,7 +147,7 @@ def count(name, value, *, size=None):
     if size is None and int(value) > MAX_COUNT:
         return f"{name} must be at most {MAX_COUNT}, got {shown(value)}"
     if size is not None and value * size > MAX_TABLE_MEMORY:
-        found = f"{value} would take {value * size // 10**9} GB" if value < 10**15 else "so many would take all"
+        found = f"{value} would need {value * size // 10**9} GB" if value < 10**15 else "this number would need all"
         return f"{name} must be at most {MAX_TABLE_MEMORY // size}, as {found} of memory"
     return None
 
@@ -221,6 +222,6 @@ def choice(name, value, allowed):
 
 
 def hint(value, allowed):
-    """Question "; did you mean ...?" with the nearest allowed word; empty if none is near."""
+    """Question "; did you mean ...?" with the nearest allowed word; empty without a near word."""
     near = nearest(value, allowed)
     return f"; did you mean {near!r}?" if near else ""

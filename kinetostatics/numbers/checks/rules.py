@@ -28,7 +28,7 @@ from .values import (
 
 
 class PlausibleRange(NamedTuple):
-    """Plausible magnitudes of a nonzero number; one beyond looks like a slip of units.
+    """Plausible magnitudes of a nonzero number; a number outside has probably the wrong unit.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ def plausible_range_of(rule):
 
 
 def implausibility(path, value, usual, longest=0.0):
-    """Why a number is implausible, as a sentence, or None; `longest` is the longest link, m."""
+    """Reason why a number is implausible, as a sentence, or None; `longest` is the longest link, m."""
     most, advice, factor, least, in_links, si = usual
     unit = longest if in_links else 1.0
     if not has_known_values(value) or not unit:
@@ -97,7 +97,7 @@ class Number:
     """A number in a unit, or an array (designs, 1) of them; as a `table`, one for each crank angle.
 
     The unit is "1" for a ratio and "" if unknown; pint quantities are converted to it.
-    A number beyond its `usual` range is kept, with a hint.
+    A number outside its `usual` range is accepted with a hint.
     """
 
     unit: str
@@ -305,7 +305,7 @@ class HasMembers:
     def check(self, value, field=""):
         lacking = [name for name in self.members if not hasattr(value, name)]
         if isinstance(value, type) or len(lacking) == len(self.members):
-            made = "; it is a class, make one of it" if isinstance(value, type) else ""
+            made = "; it is a class, pass an instance of it" if isinstance(value, type) else ""
             return value, f"{field} must be {self.words}, got {shown(value)}{made}"
         if lacking:
             return value, f"{field} {type(value).__name__} lacks {', '.join(lacking)}"
@@ -379,7 +379,7 @@ class Rules:
         self._quick_if_given = tuple(optional.items())
 
     def are_well(self, values):
-        """Whether all values by field are certainly right; replaces them by the values to keep."""
+        """Whether all values by field are certainly valid; replaces them by the values to keep."""
         for field, quick in self._quick:
             value = values[field]
             kept = quick(value)
@@ -403,7 +403,7 @@ class Rules:
             require(self.owner, *self.also(item))
 
     def keep(self, values, owner):
-        """The same in a mapping of field to value."""
+        """Put the values to keep into a mapping of field to value, or raise `ParameterError`."""
         if not self.are_well(values):
             values.update(check_values(owner, self.rules, values))
 

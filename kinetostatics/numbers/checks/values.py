@@ -1,6 +1,6 @@
 """Recognition and conversion of values: numbers, arrays, pint quantities; why a value is no number.
 
-pint is not imported for it: the caller who passes a quantity has imported pint, and its own registry converts it. As in
+pint is not imported here: the caller of a quantity has imported pint, and its registry converts it. As in
 case files an angle is no plain number: a quantity must contain as many radians as the unit, so 5 Hz is no crank speed.
 """
 
@@ -26,7 +26,7 @@ class DimensionError(Exception):
 def to_plain(value, unit):
     """Quantities, also in lists and object arrays, as numbers in a unit; other values unchanged.
 
-    `DimensionError` if one measures something else.
+    `DimensionError` if one has another dimension.
     """
     pint = sys.modules.get("pint")
     if pint is None or isinstance(value, int | float | np.floating) or not hasattr(pint, "Quantity"):
@@ -48,7 +48,7 @@ def to_plain(value, unit):
 
 
 def to_plain_named(owner, name, value, unit):
-    """The same with a `ParameterError` that names the value."""
+    """As `to_plain`, with a `ParameterError` that names the value."""
     try:
         return to_plain(value, unit)
     except DimensionError as fault:
@@ -65,7 +65,7 @@ def _converted(quantity, unit):
     from pint import UndefinedUnitError
 
     if not unit:
-        raise DimensionError(f"must be a plain number, as nothing tells its unit, got {_quantity_text(quantity)}")
+        raise DimensionError(f"must be a plain number, as its unit is unknown, got {_quantity_text(quantity)}")
     registry = quantity._REGISTRY
     try:
         wanted = registry.parse_units("" if unit == "1" else unit)
@@ -99,7 +99,7 @@ def _magnitude_in(quantity, wanted):
     magnitude = quantity.magnitude
     if isinstance(magnitude, bool | complex | str) or getattr(magnitude, "dtype", np.dtype(float)).kind not in "iufO":
         return magnitude  # `to_number` refuses it
-    if getattr(magnitude, "dtype", np.dtype(float)) in (np.float16, np.float32):  # else converted in so few digits
+    if getattr(magnitude, "dtype", np.dtype(float)) in (np.float16, np.float32):  # otherwise converted in few digits
         quantity = quantity._REGISTRY.Quantity(magnitude.astype(float), quantity.units)
     try:
         return quantity.to(wanted).magnitude
@@ -129,7 +129,7 @@ NUMBER_TYPES = (int, float, np.integer, np.floating, Fraction, Decimal)
 
 
 class NotANumberError(Exception):
-    """A value is no number; the message says what it is and what to pass instead."""
+    """A value is not a number; the message gives its kind and the right argument."""
 
 
 def has_known_values(value):
@@ -141,7 +141,7 @@ def has_known_values(value):
 
 @cache
 def _type_problem(kind: Any):
-    """Why no value of this type is a number, and what to pass instead; None if it may be one."""
+    """Reason why values of this type are not numbers, and the right argument; None if they may be numbers."""
     for kinds, words in (
         ((bool, np.bool_), "a truth value; give a number"),
         ((complex, np.complexfloating), "a complex number; give a real one"),
@@ -165,7 +165,7 @@ def _type_problem(kind: Any):
 
 
 def not_a_number(value):
-    """Why a value is no number, and what to pass instead; None if it may be one."""
+    """Reason why a value is not a number, and the right argument; None if it may be a number."""
     kind: Any = type(value)
     return _type_problem(kind)
 
@@ -190,7 +190,7 @@ def to_number(value, table, unit=""):
         value = np.asarray(value)
     shape = tuple(getattr(value, "shape", ()))
     if 0 in shape:
-        raise NotANumberError(f"of shape {shape}, which holds nothing")
+        raise NotANumberError(f"of shape {shape}, which is empty")
     if not table and shape not in ((), (1,)) and (len(shape) < 2 or shape[-1] != 1):
         raise NotANumberError(
             f"of shape {shape}; its last axis would be the crank angle, add one of length 1: [..., None]"
@@ -223,7 +223,7 @@ def _read_only_copy(array):
     if array.dtype == float and array.flags.owndata and not array.flags.writeable:
         return array
     if array.size * 8 > MAX_TABLE_MEMORY:
-        raise NotANumberError(f"of {array.size} numbers, which would take {array.size * 8 // 10**9} GB of memory")
+        raise NotANumberError(f"of {array.size} numbers, which would need {array.size * 8 // 10**9} GB of memory")
     kind: type = float
     if array.dtype == object:
         kinds = set(map(type, array.flat))

@@ -135,7 +135,7 @@ def _same_torque_text(subject):
         return first.shape == torque.shape and np.nanmax(np.abs(first - torque)) < 1e-9 * largest
 
     same = [" and ".join(group) for group in grouped(torques, alike) if len(group) > 1]
-    return f"Curves lie on one another where machines take the same torque: {'; '.join(same)}." if same else ""
+    return f"Curves coincide for machines with the same torque: {'; '.join(same)}." if same else ""
 
 
 def _turning(subject):
@@ -203,7 +203,7 @@ BROWSERS = (
 )
 """Browsers that print without a window, in order of preference."""
 BROWSER_TIMEOUT = 120.0
-"""Seconds after which a running browser is stopped."""
+"""Time limit of a running browser, s."""
 RENDER_TIME = 20_000
 """Milliseconds of the browser's virtual clock for drawing the figures."""
 
@@ -214,12 +214,12 @@ def browser():
     Raises
     ------
     MissingLibraryError
-        There is none; the message names those looked for.
+        No browser is installed; the message lists suitable ones.
     """
     found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     if found is None:
         raise MissingLibraryError(
-            f"a PDF is printed by a browser, and none of {', '.join(BROWSERS)} is found: install one, or open the "
+            f"a PDF needs a browser, but none of {', '.join(BROWSERS)} is installed: install one, or open the "
             "report in any browser and print it from there"
         )
     return found

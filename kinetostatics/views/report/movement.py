@@ -13,7 +13,7 @@ from ...machine.group import FRAME
 from ...mechanics.quantities import magnitude
 from .. import strokes
 from ..canvas import close_curve, grouped
-from ..strokes import UNCLIPPED_SHARE, Shape, Stroke
+from ..strokes import UNCLIPPED_SHARE, Shape, Stroke, moving_surfaces, working_curves
 
 ARROW_REACH = 0.3
 """Length of the longest arrow, over the largest extent of the joints."""
@@ -71,6 +71,7 @@ def _drawing(name, shape, scale, longest, boxes):
     solution = shape.turn
     made = solution.mechanism
     strokes = [*_fixed_strokes(shape), *shape.counterweights(solution), *shape.strokes(solution)]
+    strokes += [*shape.ties(solution, solution.loads), *moving_surfaces(solution, solution)]
     strokes += shape.signs(solution.loads, solution)
     boxes += [np.reshape(stroke.points, (2, -1)) for stroke in strokes]
     outputs = made.outputs
@@ -104,6 +105,9 @@ def _fixed_strokes(shape):
 
     for joint in mechanism.curves:
         yield still("curve", close_curve(turn.position(joint)))
+    for body, points in working_curves(turn):
+        if body == FRAME:
+            yield still("surface", points)
     for bar in mechanism.crank.bars:
         yield still("circle", close_curve(turn.position(bar.end)))
     for rail in shape.rails():

@@ -78,9 +78,9 @@ class Subject:
     ----------
     title, source : str
     machines : mapping of name to Machine
-        The reference first; variants of a case may have another one of their own.
+        The reference is first; variants of a case may have their own reference.
     command : str
-        What made the report.
+        Command that made the report.
     case : Case or None
     """
 
@@ -144,7 +144,7 @@ def subject_of(what, variant=None, title=None, command="") -> Subject:
     for name in names:
         variant = case.variants[name]
         units, derived = variant.units, variant.scene.parameters
-        given = {  # a parameter that the file leaves open or gives as a word has its derived number
+        given = {  # parameters left open or given as a word have their derived number
             path: (derived.get(path, value) if value is None or isinstance(value, str) else value, units[path])
             for path, value in variant.parameters.items()
             if value is not None or path in derived
@@ -158,18 +158,18 @@ def _of_scenes(scenes, variant, title, command):
     checks.require(
         "report",
         None if scenes else "there are no scenes to report",
-        None if variant is None else "variant chooses one of a case file; give the scenes that are wanted",
+        None if variant is None else "variant is for case files; give only the wanted scenes",
         *(
             None if isinstance(scene, Scene) else f"{name!r} must be a Scene, got a {type(scene).__name__}"
             for name, scene in scenes.items()
         ),
-        *(f"{name!r} labels several scenes; give each its own" for name, count in labels.items() if count > 1),
+        *(f"{name!r} labels several scenes; give each its own label" for name, count in labels.items() if count > 1),
     )
     several = [name for name, scene in scenes.items() if scene.solve(1).shape != (1,)]
     if several:
         raise ParameterError(
-            f"report: {', '.join(map(str, several))} holds arrays, several designs or values for certain crank angles; "
-            "give a scene of one design, and what varies over the turn as a ks.Table or a function"
+            f"report: {', '.join(map(str, several))} has arrays, several designs or values for certain crank angles;  "
+            "give a scene of one design, and values over the turn as a ks.Table or a function"
         )
     step = _step(scenes.values())
     machines = {}
@@ -190,11 +190,11 @@ def _step(scenes):
 
 
 PROGRESS_DELAY = 1.0
-"""Seconds before a progress bar appears."""
+"""Time until a progress bar appears, s."""
 
 
 def report(what, path, *, variant=None, title=None, pdf=None, units=None, command="", progress=False):
-    """Write a report: one HTML file without external files or requests, to read, to turn by hand and to print.
+    """Write a report: one HTML file without external files or requests, for reading, animation and print.
 
     The mechanism turns by slider, play button or arrow keys, with its reactions as arrows. The page also shows figures
     to zoom, values at the chosen angle, extremes, comparison with published figures, certainty, friction, drive, and

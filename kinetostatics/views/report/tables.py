@@ -93,7 +93,7 @@ def with_published(texts, published, path):
 
 
 def special_tables(case):
-    """Caption, frame and published figures of a case's tables of balancing and of linkages, by name; those it has."""
+    """Caption, frame and published figures of a case's tables of balancing and of linkages, by name; if it has any."""
     found = {
         "balancing": ("Counterweights and shaking force", case.balancing_table(), case.published.balancing),
         "linkage": ("Swing and transmission", case.linkage_table(), case.published.linkage),
@@ -115,7 +115,7 @@ class MergedRow(NamedTuple):
 def merged_rows(comparisons, published=()):
     """Rows of comparisons with one reference, without torque extrema if they are many, and the number left out.
 
-    A row stands behind its predecessor in its own table. Rows have the units of the report, but those with `published`
+    A row follows its predecessor in its own table. Rows have the units of the report, but those with `published`
     values.
     """
     tables = [{row.label: row for row in comparison.rows} for comparison in comparisons]
@@ -206,7 +206,7 @@ def decimals(largest):
 DOUBLE_DIGITS = 15.95
 """Significant digits of a double."""
 OUTLIER_RATIO = 1e4
-"""Ratio to the median rounding-error bound above which a bound is listed alone, with its angle."""
+"""Ratio to the median rounding-error bound above which a bound is listed separately, with its angle."""
 ZERO_NOTE = (
     "Numbers that are not listed are zero, but motor, flywheel and tables of values, which stand in the case file."
 )
@@ -236,7 +236,7 @@ def glance(subject):
     references = " or ".join(subject.comparisons)
     ratio = f" Ratio of means: that of {references} over that of the machine; above 1 the machine takes less."
     note = (
-        f"Torque: what the drive must give on the crank, over one period.{ratio if references else ''} Power balance: "
+        f"Torque: torque of the drive on the crank, over one period.{ratio if references else ''} Power balance: "
         "difference of the torques by equilibrium and by powers, over the largest power that flows."
     )
     return _without_empty(Table("", heads, rows, 2, note))
@@ -365,7 +365,7 @@ def _certainty(solution):
     )
     found["condition at the middle of all crank angles"] = number(float(np.nanmedian(condition)), 3)
     if solution.friction.acting:
-        found["friction and reactions found together"] = "yes" if np.all(solution.converged) else "not everywhere"
+        found["friction and reactions converged"] = "yes" if np.all(solution.converged) else "not everywhere"
         found["friction: change by one more pass, at most"] = number(float(np.nanmax(solution.friction_residual)), 2)
         found["friction: margin to jamming, least"] = number(float(np.nanmin(solution.friction_margin)), 4)
     return found
@@ -385,7 +385,7 @@ def _bound(solution, name, factor):
     if apart.any():
         place = int(np.argmax(np.where(apart, bounds, -1.0)))
         where = f"{number(np.degrees(solution.crank_angle[place]))}°"
-        others = "" if (count := np.count_nonzero(apart)) == 1 else f", the largest of {count} that stand out"
+        others = "" if (count := np.count_nonzero(apart)) == 1 else f", the largest of {count} outliers"
         notes.append(f"but {round_bound_up(bounds[place])} at {where}, a jump or near a limit{others}")
     if not proven.all():
         notes.append(f"not proven at {np.count_nonzero(~proven)} of {proven.size} angles")
@@ -410,20 +410,20 @@ SHARED = ("balancing_torque", "O")
 
 
 def shares(subject):
-    """Tables of who causes the peaks of torque and reaction O, for machines without friction that close all round."""
+    """Shares of the peaks of torque and reaction O by source, for machines without friction that close all round."""
     tables = []
     for machine in subject.machines.values():
         for name in SHARED if not machine.solution.friction.acting else ():
             try:
                 found = machine.solution.shares(name)
-            except KinetostaticsError:  # no such quantity, none that has a peak, or gaps
+            except KinetostaticsError:  # no quantity of this name, no peak, or gaps
                 continue
             tables.append(table_of_frame(found.frame(), f"{machine.name}: {found.label}", found.note))
     return tables
 
 
 def parts(subject):
-    """Tables of the parts of the case, with what needs a look."""
+    """Tables of the parts of the case, with points to check."""
     if subject.case is None or not subject.case.sizing:
         return []
     found = sizing_table(subject.case.sizing, subject.solutions)
@@ -458,7 +458,7 @@ def drive_tables(subject):
     tables = []
     if runs:
         tables.append(table_of_frame(running_table(runs, starts), "Speed, power and start-up"))
-        tables.append(table_of_frame(energy_table(runs), "Where the energy of a turn goes"))
+        tables.append(table_of_frame(energy_table(runs), "Energy balance of a turn"))
     return runs, tables, reasons
 
 
@@ -484,7 +484,7 @@ def inputs(subject):
         tables.append(Table("Common to all" if apart else "", ["", "unit", "value"], common, 2, ZERO_NOTE, code=True))
     if apart:
         heads = ["", "unit", *(machine.name for machine in machines)]
-        tables.append(Table("What tells them apart", heads, apart, 2, code=True))
+        tables.append(Table("Differences", heads, apart, 2, code=True))
     return tables
 
 

@@ -12,12 +12,12 @@ from kinetostatics.machine.links import Joint
 from kinetostatics.machine.loads import table_pieces
 from kinetostatics.machine.loads.table_pieces import (
     KINK_TOLERANCE,
-    SAMPLE_OFFSET,
     STOP_SAMPLES,
     TURN,
     kink_rows,
     stops_and_crossings,
 )
+from kinetostatics.numbers.sign_changes import SAMPLE_OFFSET
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.every import every
 

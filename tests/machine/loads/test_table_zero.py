@@ -187,7 +187,7 @@ def test_each_slider_has_its_own_dead_centre():
         (
             V_TWIN,
             ks.Torque(TABLE, on="crank"),
-            "has sliders 'slider', 'slider2': say which, slider=",
+            "has sliders 'slider', 'slider2': choose one, slider=",
         ),
         (V_TWIN, ks.Torque(ks.Table(AFTER_TDC, GAS, zero="TDC", slider="ram"), on="crank"), "'ram'"),
         (SHORT, ks.ProcessForce(TABLE), "crank-slider does not close at all crank angles, so 'slider' has no TDC"),

@@ -105,7 +105,9 @@ def a_browser(folder, monkeypatch, script):
 
 def test_missing_browsers_are_listed(monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(ks.KinetostaticsError, match=r"none of chromium, .* is found: install one, or open the report"):
+    with pytest.raises(
+        ks.KinetostaticsError, match=r"none of chromium, .* is installed: install one, or open the report"
+    ):
         html.browser()
 
 

@@ -196,10 +196,10 @@ def test_files_are_told_with_what_tells_their_content():
 @every("what, options, message", [
     ({}, {}, "there are no scenes"),
     ({"a": 3}, {}, "'a' must be a Scene, got a int"),
-    ({"a": plain()}, {"variant": "b"}, "variant chooses one of a case file"),
+    ({"a": plain()}, {"variant": "b"}, "variant is for case files"),
     ("sawframe_2r63", {"variant": "cam-cirle"}, "cam-cirle"),
-    ("sawframe_2r36", {}, "no such file"),
-    ({"a": plain().varied({"slider.mass": np.array([[1.0], [2.0]])})}, {}, "a holds arrays, several designs or values"),
+    ("sawframe_2r36", {}, "there is no file"),
+    ({"a": plain().varied({"slider.mass": np.array([[1.0], [2.0]])})}, {}, "a has arrays, several designs or values"),
     ({1: plain(), "1": plain()}, {}, "'1' labels several scenes"),
 ])  # fmt: skip
 def test_what_cannot_be_reported_is_said(what, options, message):

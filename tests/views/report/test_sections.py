@@ -109,7 +109,7 @@ def test_where_digits_are_lost_fewer_are_shown():
 
 def test_certainty_names_power_balance_and_condition():
     found = tables.certainty(RUBBING())
-    assert table_of(found, "friction and reactions found together")[1:] == ["yes"] * 2
+    assert table_of(found, "friction and reactions converged")[1:] == ["yes"] * 2
     assert all(
         float(cell) < 1e-12 for cell in table_of(found, "power balance, relative to the largest power that flows")[1:]
     )

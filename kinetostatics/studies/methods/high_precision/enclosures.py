@@ -19,12 +19,13 @@ from ....machine.loads import Load, ProcessForce, Table
 from ....mechanics.dynamics import Dynamics
 from ....mechanics.load_values import title_of, without_forces
 from ....mechanics.quantities import components
-from ....numbers.formatting import repr_with_units
+from ....numbers.formatting import with_units
 from ....numbers.parameter_tree import map_numbers, replace_unchecked
 
 MIN_BITS, MAX_BITS = 128, 4096
 
 
+@with_units()
 @dataclass(frozen=True, eq=False)
 class Enclosure:
     """Interval enclosures of a quantity at the crank angles of a solution.
@@ -59,8 +60,6 @@ class Enclosure:
     radius: float
     bits: int
     agreement: float | None = None
-
-    __repr__ = repr_with_units()
 
     @property
     def largest(self):
