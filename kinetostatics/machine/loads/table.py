@@ -63,7 +63,8 @@ class Table:
         mechanism.
     zero : float, text or "TDC" or "BDC", optional
         Crank angle at which the table's angle is 0, rad from +x, or text with a unit ("90 deg"); by default 0. "TDC" is
-        the dead centre of the slider farther from the crank, "BDC" the nearer one; both follow the lengths. Without a
+        the dead centre of the slider farther from the crank, "BDC" the nearer one; both follow the lengths. Over a
+        period of several turns it is the one between -15 and 345 deg; for a later turn add turns to `x`. Without a
         zero, a `HintWarning` reports a force on a slider whose largest value is far from both dead centres.
     sense : +1 or -1
         Direction in which the table's angle increases: +1 counter-clockwise, as the library's crank angle, -1

@@ -46,6 +46,18 @@ def test_the_table_begins_at_the_dead_centre(name, zero, sense):
     assert largest(found.balancing_torque - by_angle.balancing_torque) < 1e-7 * largest(found.balancing_torque)
 
 
+@every("offset", [0.0, 1e-15, -1e-15, 1e-3, -1e-3, 0.04])
+@every("zero, guide_angle", [("TDC", 0.0), ("BDC", np.pi)])
+def test_a_four_stroke_table_begins_in_the_turn_of_the_dead_centre_near_zero(zero, guide_angle, offset):
+    machine = ks.crank_slider(0.05, 0.2, guide_angle=guide_angle, guide_offset=offset)
+    s = scene(machine, zero, period=4 * np.pi, x=2.0 * AFTER_TDC).solve(8)
+    (table,) = (load.value_now for load in s.loads)
+    assert abs(table.of("slider").zero_angle(s)) < 0.3  # not a turn later
+    assert (
+        largest(table(s) - np.interp(s.crank_angle, 2.0 * AFTER_TDC, GAS, period=4 * np.pi)) < 2.5e3
+    )  # not another peak
+
+
 @every("zero", [0.3, "0.3 rad", f"{np.degrees(0.3)} deg", np.float64(0.3)])
 @every("sense", [1, -1])
 def test_an_angle_shifts_the_rows(zero, sense):
