@@ -12,7 +12,7 @@ DIRECTIONS = np.exp(0.25j * np.pi * np.array([1, 3, -1, -3, 0, 2, 4, -2]))
 """Directions from a point to its label, in order of preference."""
 DISTANCES = (6.0, 11.0, 17.0, 26.0, 38.0, 54.0, 76.0)
 """Distances between a point and the nearest side of its label, in typographic points."""
-LEADER_DISTANCE = 10.0
+LEADER_DISTANCE = 14.0
 """Distance from which on a leader line connects label and point."""
 ON_LABEL, ON_POINT, ON_CURVE, OUTSIDE, NEAR_POINT = 20.0, 4.0, 1.5, 10.0, 3.0
 """Costs of a label on another label, a point, a curve, outside the axes, and near another point than its own.
@@ -62,7 +62,7 @@ class Labels(Artist):
                 ON_POINT * _contain(boxes, np.array(points)).sum(axis=1)
                 + ON_POINT * _overlap(boxes, np.concatenate(marks)).sum(axis=1)
                 + ON_CURVE * sum((places.crossed(*path) for path in paths), np.zeros(len(boxes)))
-                + NEAR_POINT * _contain(boxes + wide, np.reshape(others, (-1, 2))).sum(axis=1)
+                + NEAR_POINT * _contain(boxes + wide, np.reshape(others, (-1, 2))).any(axis=1)
                 + OUTSIDE * outside
             )
             frees.append((places, DISTANCE_COSTS + costs))

@@ -257,7 +257,8 @@ class Shape:
             yield Stroke("counterweight", place_sign(SECTOR, sign.start, sign.direction, 2.0 * unit))
         elif sign.end is not None:
             shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
-            yield Stroke(sign.kind, span_sign(shape, *self._near_part(sign.start, sign.end), 0.5 * unit))
+            start, end = self._near_part(sign.start, sign.end)
+            yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
         else:
             shape = {"spiral": SPIRAL, "ring": RING}.get(sign.kind, COUPLE)
             level = np.broadcast_to([[1.0], [0.0]], sign.start.shape)
@@ -268,8 +269,7 @@ class Shape:
         """Ends of a line, in poses; if it leads far away, those of a part beside the machine."""
         if not self._leads_far(start, end):
             return start, end
-        centre = self.turn.position(next(iter(self.mechanism.joints)))[:, :1]
-        near, far = sorted((start, end), key=lambda place: np.nanmax(np.hypot(*(place - centre))))
+        near, far = sorted((start, end), key=lambda place: np.nanmax(np.hypot(*place)))
         return near, near + (far - near) * 0.5 * self.size / np.hypot(*(far - near))
 
     def _leads_far(self, start, end):
@@ -362,7 +362,8 @@ def working_curves(solution):
     for group in solution.mechanism.groups:
         for led in group.led:
             fixed = led.body == FRAME
-            outward, cam = -1.0 if fixed else 1.0, getattr(group, "cam" if fixed else "disk", None)
+            cam: Any = getattr(group, "cam" if fixed else "disk", None)
+            outward = -1.0 if fixed else 1.0
             friction = solution.friction.acting.get(led.force.replace("_force", ""))
             radius = group.rollers.get(led.joint) if friction is None else friction.roller_radius
             if led.flat or radius is None or not hasattr(cam, "profile"):

@@ -281,7 +281,7 @@ def test_it_is_as_wide_as_a_phone(page):
         driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
-def test_a_wide_table_on_a_phone_shows_it_goes_on(page):
+def test_a_wide_table_on_a_phone_shows_it_goes_on_and_keeps_the_names_of_its_rows(page):
     driver, _ = page
     size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
@@ -298,8 +298,12 @@ def test_a_wide_table_on_a_phone_shows_it_goes_on(page):
             return [float(np.median(rows[:, column])) for column in (0, -1)]
 
         (left, right), (left_at_end, right_at_end) = shades(0), shades(10_000)
-        assert left == right_at_end == 1.0
-        assert max(right, left_at_end) < 0.9
+        assert left == left_at_end == right_at_end == 1.0  # at the left are the names, on white
+        assert right < 0.9
+        name = wide.find_element(By.CSS_SELECTOR, "tbody th")
+        places = "return [...arguments].map((item) => item.getBoundingClientRect().left)"
+        assert np.ptp(driver.execute_script(places, wide, name)) < 1.0
+        assert driver.find_element(By.ID, "pace").is_displayed()
     finally:
         driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 

@@ -186,7 +186,7 @@ def test_working_curve_is_drawn_on_each_side_that_is_pressed(axes):
             assert_allclose(points[:, :-1], cam.profile(0.05, points.shape[1] - 1, side).surface, atol=1e-15)
     ks.plots.mechanism(solution, ax=axes)
     assert "working curve of the cam" in [line.get_label() for line in axes.lines]
-    assert not list(strokes.working_curves(ks.Scene(ks.cam_crank_slider(cam, 2.02), 10.0).solve(8)))
+    assert not list(strokes.working_curves(ks.Scene(ks.cam_crank_slider(cam, cam.coupler_length), 10.0).solve(8)))
 
 
 def test_working_curve_of_a_follower_turns_with_the_crank():

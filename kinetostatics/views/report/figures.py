@@ -130,13 +130,13 @@ def _line(plot, row, name, columns, x="angle", y="value"):
     from bokeh.models import ColumnDataSource, Line
 
     source = ColumnDataSource({**columns, "variant": [name] * len(columns["angle"])})
-    style = {"line_color": COLOURS[row % len(COLOURS)], "line_dash": DASHES[row % len(DASHES)], "line_width": 2}
-    _add(plot, f"line {row}", source, Line(x=x, y=y, **style))
+    colour, dash = COLOURS[row % len(COLOURS)], DASHES[row % len(DASHES)]
+    _add(plot, f"line {row}", source, Line(x=x, y=y, line_color=colour, line_dash=dash, line_width=2))
 
 
 def _add(plot, name, source, glyph):
     """Add a glyph alone; Bokeh's own functions add a glyph each for selected, muted and other points."""
-    from bokeh.models import GlyphRenderer
+    from bokeh.models.renderers import GlyphRenderer
 
     plot.renderers.append(GlyphRenderer(data_source=source, glyph=glyph, name=name))
 

@@ -36,30 +36,21 @@ def movements(machines):
     """Drawings of machines by name, and the largest torque; machines of like size have one frame and force scale."""
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}
     solutions = [machine.solution for machine in machines.values()]
-    forces = {
-        name: max((_largest(shape.turn, joint) for joint in shape.turn.reactions), default=0.0)
-        for name, shape in shapes.items()
-    }
     torque = max(float(np.nanmax(np.abs(solution.balancing_torque), initial=0.0)) for solution in solutions)
-    frames: dict[str, dict[str, Any]] = {}
-    drawings = {}
-    for names in _of_like_size(shapes):
-        size = max(shapes[name].size for name in names)
-        force = max(forces[name] for name in names)
-        scale, boxes = ARROW_REACH * size / force if force else 0.0, []
-        for name in names:
-            drawings[name] = _drawing(name, shapes[name], scale, MAX_ARROW * size, boxes)
-        corners = np.concatenate(boxes, axis=1)
-        low, high = np.nanmin(corners, axis=1), np.nanmax(corners, axis=1)
-        frame = {"box": [*map(float, low), *map(float, high)], "scale": scale, "longest": MAX_ARROW * size}
-        frames |= dict.fromkeys(names, frame)
-    return {"drawings": [drawings[name] | frames[name] for name in shapes], "torque": torque}
-
-
-def _of_like_size(shapes):
-    """Names of shapes in lists, the largest first; each is larger than `LIKE_SIZE` times the first of its list."""
+    drawings: dict[str, dict[str, Any]] = {}
     by_size = sorted(shapes, key=lambda name: -shapes[name].size)
-    return grouped(by_size, lambda first, other: shapes[other].size > LIKE_SIZE * shapes[first].size)
+    for names in grouped(by_size, lambda first, other: shapes[other].size > LIKE_SIZE * shapes[first].size):
+        size, turns = shapes[names[0]].size, [shapes[name].turn for name in names]
+        force = max((_largest(turn, joint) for turn in turns for joint in turn.reactions), default=0.0)
+        frame: dict[str, Any] = {"scale": ARROW_REACH * size / force if force else 0.0, "longest": MAX_ARROW * size}
+        boxes: list[np.ndarray] = []
+        for name in names:
+            drawings[name] = _drawing(name, shapes[name], frame, boxes)
+        corners = np.concatenate(boxes, axis=1)
+        frame["box"] = np.concatenate([np.nanmin(corners, axis=1), np.nanmax(corners, axis=1)]).tolist()
+        for name in names:
+            drawings[name] |= frame
+    return {"drawings": [drawings[name] for name in shapes], "torque": torque}
 
 
 def _largest(solution, joint):
@@ -71,7 +62,7 @@ def _largest(solution, joint):
     return float(np.quantile(size, UNCLIPPED_SHARE) if solution.mechanism.grows(joint) else size.max())
 
 
-def _drawing(name, shape, scale, longest, boxes):
+def _drawing(name, shape, frame, boxes):
     solution = shape.turn
     made = solution.mechanism
     strokes = [*_fixed_strokes(shape), *shape.counterweights(solution), *shape.strokes(solution)]
@@ -82,10 +73,10 @@ def _drawing(name, shape, scale, longest, boxes):
     arrows = {joint: outputs[joint].at or joint for joint in solution.reactions}
     places = {joint: solution.position(joint) for joint in dict.fromkeys([*made.joints, *arrows.values()])}
     for joint, at in arrows.items():
-        vector = scale * solution.reaction(joint)
+        vector = frame["scale"] * solution.reaction(joint)
         length = magnitude(vector)
         with np.errstate(invalid="ignore", divide="ignore"):
-            shown = np.minimum(1.0, longest / np.where(length > 0, length, 1.0))
+            shown = np.minimum(1.0, frame["longest"] / np.where(length > 0, length, 1.0))
         boxes.append(places[at] + vector * shown)
     return {
         "name": name,

@@ -9,7 +9,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.views.report import figures
 from kinetostatics.views.report.movement import ARROW_REACH, FILLED_KINDS, MAX_ARROW, movements, to_base64
-from kinetostatics.views.strokes import Shape
+from kinetostatics.views.strokes import Shape, moving_surfaces
 from support.reports import from_base64, near_change_points, subject
 
 pytest.importorskip("bokeh")
@@ -153,7 +153,8 @@ def test_strokes_are_restored_in_each_pose():
         for machine, drawing in zip(subject(case).machines.values(), drawn(case)["drawings"], strict=True):
             solution = machine.solution
             shape = Shape(solution)
-            wanted = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
+            wanted = [*shape.counterweights(solution), *shape.strokes(solution), *shape.ties(solution, solution.loads)]
+            wanted += [*moving_surfaces(solution, solution), *shape.signs(solution.loads, solution)]
             sent = drawing["strokes"][-len(wanted) :]
             for stroke, item in zip(wanted, sent, strict=True):
                 assert item["kind"] == stroke.kind
