@@ -35,6 +35,7 @@ version = release = version_of("kinetostatics")
 
 extensions = [
     "casefile_keys",
+    "forked_kernels",
     "mathml",
     "myst_nb",
     "notebook_pages",

@@ -56,7 +56,7 @@ def test_random_chains_show_every_joint(seed, axes):
 
 def test_views_know_no_kind_of_group_or_load():
     words = [name for kind in (*ks.machine.loads.KINDS, ks.LeverGroup, ks.Dyad, ks.Pin) for name in (kind.__name__,)]
-    for module in ("drawings", "strokes", "labels"):
+    for module in ("drawings", "strokes", "labels", "sketches"):
         text = (Path(ks.__file__).parent / "views" / f"{module}.py").read_text()
         assert not [word for word in words if f"import {word}" in text or f" {word}," in text or f"({word}" in text]
 
