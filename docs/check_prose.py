@@ -8,7 +8,6 @@ import ast
 import json
 import re
 import sys
-from collections import deque
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -51,7 +50,7 @@ PHRASES = {
 }
 """Pattern of a phrase, without regard to capitals, and what to write in its place."""
 RULES = [(re.compile(rf"(?<![\w'-])(?:{pattern})", re.IGNORECASE), advice) for pattern, advice in PHRASES.items()]
-ANY = re.compile("|".join(rule.pattern for rule, _ in RULES), re.IGNORECASE)
+ANY = re.compile(rf"(?<![\w'-])(?:{'|'.join(PHRASES)})", re.IGNORECASE)
 
 SKIPPED = re.compile(r"$|:\w+:|<!--|\(\w[\w-]*\)=$|[-=*]{3,}$|\*(uk|ru)\* ")
 """Lines of no sentence: options of directives, comments, targets, rules, terms in other languages."""
@@ -68,6 +67,8 @@ INLINE = [
     (re.compile(r"\*\*|__|(?<!\w)[*_]|[*_](?!\w)"), ""),
     (re.compile(r"\bhttps?://\S+"), "Link"),
 ]
+MARKS = re.compile(r"[`*_\[$<{]|http")
+"""Begin of the marks of INLINE."""
 ABBREVIATIONS = re.compile(r"\b(e\.g|i\.e|etc|cf|vs|approx|eqs?|[Ff]igs?|[Nn]os?|pp|vol|al)\.$")
 NAMES = re.compile(r"\w+(\([\w, ]*\))?(, \w+(\([\w, ]*\))?)+")
 """Line of names of attributes or methods."""
@@ -77,7 +78,7 @@ WORD = re.compile(r"[^\W_][\w'.,/^-]*")
 
 def plain(text):
     """`text` without the marks of Markdown, code and formulas as one word, on the same lines."""
-    for pattern, replacement in INLINE:
+    for pattern, replacement in INLINE if MARKS.search(text) else ():
 
         def replaced(found, replacement=replacement):
             kept = found.expand(replacement)
@@ -107,7 +108,7 @@ def findings(blocks):
             for rule, advice in RULES if ANY.search(sentence) else ():
                 if found := rule.search(sentence):
                     yield line, f"'{found[0]}': write {advice}: {sentence[:110]}"
-            if counted and (words := len(WORD.findall(sentence))) > MAX_WORDS:
+            if counted and len(sentence) > 2 * MAX_WORDS and (words := len(WORD.findall(sentence))) > MAX_WORDS:
                 yield line, f"{words} words in one sentence, {MAX_WORDS} at most: {sentence[:110]}"
 
 
@@ -186,11 +187,15 @@ def message(text, line):
     return [] if text.count(" ") < 2 or re.search(r"[{}]|\n.*[=<;]", text) else [(line, text, True)]
 
 
+WORDLESS = (ast.Name, ast.expr_context, ast.operator, ast.cmpop, ast.alias, ast.arguments)
+"""Nodes of the syntax that hold no text."""
+
+
 def module(text):
     """Blocks of a module of the package: docstrings, those of constants too, and texts of three words or more."""
-    blocks, waiting = [], deque([ast.parse(text)])
+    blocks, waiting = [], [ast.parse(text)]
     while waiting:
-        node = waiting.popleft()
+        node = waiting.pop()
         match node:
             case ast.Expr(value=ast.Constant(value=str(found))):
                 blocks += docstring(found, node.lineno)
@@ -200,7 +205,7 @@ def module(text):
                 parts = [part.value if isinstance(part, ast.Constant) else "N" for part in node.values]
                 blocks += message("".join(parts), node.lineno)
             case _:
-                waiting.extend(ast.iter_child_nodes(node))
+                waiting += [child for child in ast.iter_child_nodes(node) if not isinstance(child, WORDLESS)]
     return sorted(blocks)
 
 
