@@ -140,9 +140,7 @@ def test_a_group_of_the_users_own_that_pushes_the_frame_by_no_pair_is_warned_of(
     s = ks.solve(own, ANGLES, crank_speed=9.0, loads=ks.Gravity())
     assert list(s.ground) == ["O", "guide", "motor"]
     lacking = with_group(Pan(ks.Link(3.0, 0.05))).solve(ANGLES)
-    with pytest.warns(
-        UserWarning, match=r"on the frame lack up to 0 N and 52 N m about O. A group of your own"
-    ):
+    with pytest.warns(UserWarning, match=r"on the frame lack up to 0 N and 52 N m about O. A group of your own"):
         assert list(lacking.ground) == ["O", "motor"]
     with pytest.warns(UserWarning, match="the forces on the frame lack"):
         ks.extremes(lacking, "ground O")

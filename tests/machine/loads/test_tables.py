@@ -92,7 +92,7 @@ def test_travel_beyond_the_table_names_both_ranges():
 def test_table_names_one_of_two_sliders():
     engine = ks.Mechanism("V", ks.Crank(0.05), (ks.SliderGroup(0.2), ks.SliderGroup(0.2, pin="C", label="2")))
     table = ks.Table(X, [1.0, 2.0, 3.0], over="travel")
-    with pytest.raises(ks.ParameterError, match="sliders 'slider', 'slider2': say which"):
+    with pytest.raises(ks.ParameterError, match="sliders 'slider', 'slider2': choose one"):
         ks.Scene(engine, 1.0, 0.0, ks.Torque(table, on="crank"))
     with pytest.raises(ks.ParameterError, match="table over travel: slider is 'slider3', allowed: 'slider'"):
         ks.Scene(engine, 1.0, 0.0, ks.Torque(ks.Table(X, X, over="travel", slider="slider3"), on="crank"))
