@@ -71,7 +71,7 @@ alone = ("index", "start", "command_line", "casefile", "how_sure", "gallery", "g
 html_sidebars = {page: [] for page in alone}
 html_show_sourcelink = False
 html_theme_options = {
-    "header_links_before_dropdown": 7,
+    "header_links_before_dropdown": 6,
     "navbar_end": ["theme-switcher"],
     "secondary_sidebar_items": ["page-toc"],
     "footer_start": ["copyright"],

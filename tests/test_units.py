@@ -664,6 +664,7 @@ RESULTS = {
     "Front",
     "SolutionNumber",  # texts and a function
     "Contact",
+    "FollowerContact",
     "Surge",
     "TorqueBalancing",
     "Running",

@@ -1,4 +1,4 @@
-"""Pages with code: checks of their numbers are folded away, and tables have one header row and readable numbers."""
+"""Pages with code: checks of their numbers are folded away; tables have one header row, none if it would be empty."""
 
 import ast
 import re
@@ -50,7 +50,10 @@ def _checks(body):
 
 
 def clean(app, doctree):
-    """Fold the assertions of code cells, and tidy the tables that they show."""
+    """Fold the assertions of code cells, tidy the tables that they show, and drop empty headers of others."""
+    for head in list(doctree.findall(nodes.thead)):
+        if not head.astext().strip():
+            head.parent.remove(head)
     for cell in doctree.findall(lambda node: node.get("nb_element") if isinstance(node, nodes.Element) else None):
         kind = cell["nb_element"]
         if kind == "cell_code_source":

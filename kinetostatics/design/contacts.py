@@ -152,19 +152,6 @@ class FollowerContact(CamContact):
                 f"{radius:.6g}"
             )
 
-    def require_no_undercut(self):
-        """Raise an error if the roller undercuts a side of the cam that carries it."""
-        for side in () if self.flat else self.sides:
-            sharpest = self._highest(lambda at, sign=-SIDE_SIGNS[side]: sign * at.curvature)
-            if sharpest.value * self.roller_radius >= 1.0:
-                raise ParameterError(
-                    f"contact: a roller of radius {self.roller_radius:.6g} m undercuts the {side}. The pitch curve has "
-                    f"a radius of curvature of {1.0 / sharpest.value:.6g} m at crank angle "
-                    f"{np.degrees(sharpest.angle):.6g} deg; take a smaller roller, or enlarge the cam"
-                )
-            if side == "disk":
-                working_curve(self.cam, self.roller_radius, 8)
-
     def frame(self):
         """Table with a row for each crank angle, a pandas DataFrame."""
         return super().frame().assign(**{"pressure_angle [rad]": self.pressure_angle})
@@ -270,16 +257,18 @@ def contact(
     materials = [[values[f"{name} of the {body}"] for name in MATERIAL_RULES] for body in (part, "cam")]
     kept = {name: values[f"limit {name!r}"] for name in LIMIT_UNITS if name in limits}
     size = values.get("roller_radius", 0.0), values["width"], roller.contact_modulus(*materials)
+    found: CamContact
     if of_follower:
-        of_disk = FollowerContact(solution, group.disk, *size, limits=kept, follower=group)
-        of_disk.require_no_undercut()
-        return of_disk
-    radius, mass = values["roller_radius"], values["roller_mass"]
-    inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
-    wheel = Roller(group.cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
-    found = Contact(solution, group.cam, *size, limits=kept, roller=wheel)
-    for side in found.sides:
-        working_curve(group.cam, radius, 8, side)
+        found = FollowerContact(solution, group.disk, *size, limits=kept, follower=group)
+        sides = () if led.flat else found.sides[:1]  # an open cam has no ring
+    else:
+        radius, mass = values["roller_radius"], values["roller_mass"]
+        inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
+        wheel = Roller(group.cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
+        found = Contact(solution, group.cam, *size, limits=kept, roller=wheel)
+        sides = found.sides
+    for side in sides:
+        working_curve(found.cam, found.roller_radius, 8, side)
     return found
 
 

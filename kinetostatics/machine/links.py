@@ -281,7 +281,11 @@ class Rolling(NamedTuple):
     joint: str
     force: str
     against: str = "frame"
-    name = Sliding.name
+
+    @property
+    def name(self):
+        """Name of the pair: that of the force without suffix."""
+        return self.force.removesuffix("_force")
 
 
 class Meshing(NamedTuple):

@@ -144,16 +144,12 @@ def table_hints(motion):
 
 def _peak_hints(motion, load, table):
     """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres."""
-    lengths = [bar.length for bar in motion.mechanism.bars]
-    if not (_is_diagram(table) and all(map(checks.has_known_values, lengths))):
+    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first if _is_diagram(table) else None
+    if rate is None or not checks.has_known_values(rate):
         return
     peaks = table.x[table.y / table.largest >= PEAK_SHARE]
-    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first
-    if not checks.has_known_values(rate):
-        return
-    turns_back = np.diff(np.signbit(rate))
-    stops = RATE_ANGLES[:-1] if turns_back.ndim > 1 else RATE_ANGLES[:-1][turns_back]
-    if turns_back.ndim == 1 and np.any(_turn_distance(peaks[:, None], stops) < MAX_PEAK_DISTANCE - RATE_STEP):
+    stops = RATE_ANGLES[:-1][np.diff(np.signbit(rate))] if rate.ndim == 1 else np.empty(0)
+    if np.any(_turn_distance(peaks[:, None], stops) < MAX_PEAK_DISTANCE - RATE_STEP):
         return
     try:
         angles = np.column_stack(dead_centres(motion, load.on)[0])
@@ -264,7 +260,7 @@ def _inertia(bar, link, crank):
     """
     if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None
-    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))
+    reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))  # the arm of a wiper goes on beyond its joints
     inertia, unit = link.inertia, link.mass * reach * reach
     if np.any((inertia > 0) & (SMALL_INERTIA_FACTOR * 12.0 * inertia < unit)):
         odd, beside, advice = np.min(inertia), "less than a thousandth of", "is it in kg m2? 0 makes it a point mass"

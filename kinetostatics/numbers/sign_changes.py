@@ -14,18 +14,9 @@ MAX_VERTEX = 0.1
 
 
 class SignChanges(NamedTuple):
-    """Sign changes over a period.
+    """Index `row` of the function and `angle` of each sign change, rad, (..., K); NaN pads rows of designs with fewer.
 
-    Attributes
-    ----------
-    row : array (..., K)
-        Index of the function; NaN pads the rows of designs that have fewer changes than another.
-    angle : array (..., K)
-        Angle in [0, period), rad; of one function in the order in which it changes after the first sample.
-    samples : array (1, N)
-        Sampled angles, the last a period after the first, rad.
-    values : array (functions, ..., N)
-        Values of the functions there.
+    The functions have `values`, (functions, ..., N), at the `samples`, (1, N), the last a period after the first.
     """
 
     row: Any
@@ -48,10 +39,7 @@ def sign_changes(function, period, samples):
     """
     start = SAMPLE_OFFSET + np.linspace(0.0, period, samples, endpoint=False) if np.ndim(samples) == 0 else samples
     angle = np.append(start, start[0] + period)[None]
-    found = function(angle)
-    if not len(found):
-        return SignChanges(*np.empty((2, 1, 0)), angle, np.empty((0, *angle.shape)))
-    values = np.stack(np.broadcast_arrays(*(np.atleast_2d(row) for row in found), angle)[:-1])
+    values = np.stack(np.broadcast_arrays(*(np.atleast_2d(row) for row in function(angle)), angle))[:-1]
     count, *designs, number = values.shape
     flat = math.prod(designs), number
 
@@ -73,7 +61,8 @@ def sign_changes(function, period, samples):
 
         first, root = own(lows, np.arange(lows.size)), find_roots(own, lows, highs)
         found[design, place] = np.mod(np.where(np.isnan(root), np.where(first == 0.0, lows, highs), root), period)
-    return SignChanges(*(part.reshape(*designs, part.shape[-1]) for part in (row, found)), angle, values)
+    row, found = (part.reshape(*designs, part.shape[-1]) for part in (row, found))
+    return SignChanges(row, found, angle, values)
 
 
 def pad_rows(design, count, *values):

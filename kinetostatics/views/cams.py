@@ -19,15 +19,15 @@ LIMIT_RULE = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=Tr
 LIMIT_STYLE = {"color": ACCENT, "lw": 1.0, "ls": "--"}
 
 
-def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_radius=None, ax=None):
-    """A cam: pitch curve, working curve, the roller at some crank angles, and the path of a cutter.
+def cam_profile(cam, roller_radius=None, side="disk", angles=(0, 120, 240), cutter_radius=None, ax=None):
+    """A cam: pitch curve, working curve, the roller or face at some crank angles, and the path of a cutter.
 
     Parameters
     ----------
     cam : Cam or mapping of label to Cam
         Of ``ks.cams``. Several get a panel each.
     roller_radius : float
-        m.
+        m; None for the cam of a flat face.
     side : "disk" or "ring"
     angles : sequence of float
         Crank angles at which the roller is drawn, degrees.
@@ -59,8 +59,12 @@ def cam_profile(cam, roller_radius, side="disk", angles=(0, 120, 240), cutter_ra
         path = close_curve(made.cutter_path(cutter_radius))
         ax.plot(*path, color=LOAD, lw=0.8, ls="--", label="path of the cutter")
     posed = cam.profile(roller_radius, np.radians(angles), side)
-    for degrees, centre, touch in zip(angles, posed.pitch.T, posed.surface.T, strict=True):
-        ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
+    half_face = 0.3 * np.hypot(*made.surface).max()
+    for degrees, centre, touch, (x, y) in zip(angles, posed.pitch.T, posed.surface.T, posed.normal.T, strict=True):
+        if cam.flat:
+            ax.plot(*(touch[:, None] + half_face * np.array([[-y, y], [x, -x]])), color=STEEL, lw=1.2)
+        else:
+            ax.add_patch(Circle(tuple(centre), posed.roller_radius, fc="none", ec=STEEL, lw=1.2))
         ax.plot(*np.stack([np.zeros(2), centre], axis=1), color=STEEL, lw=0.5, ls=":")
         ax.plot(*touch, ".", color=INK, ms=4)
         label(ax, f"{degrees:g}°", centre)
@@ -169,7 +173,7 @@ def contact_pressure(contacts, ax=None):
             ax.fill_between([], [], label=f"{name}: lift-off" if name else "lift-off", **shade)
         if "pressure" in contact.limits:
             ax.axhline(contact.limits["pressure"] / 1e6, **LIMIT_STYLE)
-    ax.set_ylim(bottom=0.0)
+    ax.set_ylim(0.0, 1.08 * ax.dataLim.ymax or 1.0)
     return _label_axes(ax, "Hertz pressure [MPa]", len(ax.get_legend_handles_labels()[1]) > 1)
 
 
@@ -225,7 +229,8 @@ def draw_each_over_turn(ax, named, value, points=POINTS_PER_TURN):
 def _label_axes(ax, text, legend):
     """Label the crank angle in degrees and the value `text`, and draw a legend if asked for; returns the Axes."""
     ax.set(xlabel=FROM_X.axis, ylabel=text)
-    ax.set_xticks(np.arange(0, 361, 60))
+    ax.set_xticks(np.arange(0, 361, 90))
+    ax.set_xlim(0, 360)
     if legend:
         ax.legend(edgecolor="none", fontsize="small")
     return ax

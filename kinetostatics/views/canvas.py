@@ -374,23 +374,22 @@ def draw_over_turn(ax, named, curves, label, unit, counted):
 
     Curves of a shorter period are repeated.
     """
-    longest = max(solution.period for solution in named.values())
-    draw_curves(ax, {name: _repeated(curve, named[name].period, longest) for name, curve in curves.items()})
-    period = round(np.degrees(longest))
-    finish_axes(ax, label, len(named) > 1, period, counted)
+    periods = {name: np.degrees(solution.period) for name, solution in named.items()}
+    longest = max(periods.values())
+    draw_curves(ax, {name: _repeated(curve, periods[name], longest) for name, curve in curves.items()})
+    finish_axes(ax, label, len(named) > 1, round(longest), counted)
     limit_axis(ax, [value for _, value in curves.values()], unit)
     shade_gaps(ax, named, curves, counted)
     return ax
 
 
 def _repeated(curve, period, longest):
-    """Curve (2, N) over a period, over as many periods as fit into the longest, closed between them."""
+    """Curve (2, N) over a period, degrees: over as many as fit into the longest; unchanged if it lacks a part."""
     angle, value = curve
-    turns = np.arange(round(longest / period))
-    span = np.ptp(angle) + np.max(np.diff(angle), initial=0.0)
-    if turns.size < 2 or abs(span - np.degrees(period)) > np.max(np.diff(angle), initial=0.0):
+    turns, step = np.arange(round(longest / period)), np.max(np.diff(angle), initial=0.0)
+    if not angle[-1] < period <= angle[-1] - angle[0] + 1.5 * step:
         return curve
-    return np.stack([np.ravel(angle + np.degrees(period) * turns[:, None]), np.tile(value, turns.size)])
+    return np.stack([np.ravel(angle + period * turns[:, None]), np.tile(value, turns.size)])
 
 
 def panels(count, columns, width, height, more=0.0):

@@ -11,6 +11,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator
 
 from ..errors import ParameterError
 from .canvas import ACCENT, axes, axis_words, panels, require_columns, save_figure
+from .labels import label
 
 MIN_DRAWN_ERROR = 1e-17
 """Smallest error drawn, below the rounding of the largest value; zero errors are drawn there."""
@@ -162,7 +163,7 @@ def model_ladder(needs, ax=None):
 
     for made in drawn(needs.alone, "o", color="0.6", label="one simplification"):
         place = made.operations, max(made.error, floor)
-        ax.annotate(made.name, place, xytext=(5, 3), textcoords="offset points", fontsize=7, color="0.3")
+        label(ax, made.name, place, color="0.3")
     drawn(needs.ladder, "-D", color=ACCENT, markersize=5, drawstyle="steps", label="ladder: cheapest for its error")
     ax.axhline(needs.within, color="0.3", linestyle="--", linewidth=1.0, label=f"tolerance {needs.within:g}")
     drawn([needs.smallest], "*", color="tab:green", markersize=16, zorder=4, label=f"smallest: {needs.smallest.name}")

@@ -58,7 +58,7 @@ rocking_moment = with_units(force_curves.rocking_moment)
 sections = with_units(sizing_sections.sections)
 shaking_force = with_units(curves.shaking_force)
 shares = with_units(one_panel_each(forces.shares, 7.0, 4.2, pad=22.0))
-sketch = with_units(sketches.sketch)
+sketch = with_units(one_panel_each(sketches.sketch, 6.4, 3.6))
 torque = with_units(curves.torque)
 __all__ = [
     "acceleration_error",

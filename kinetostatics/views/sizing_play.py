@@ -52,12 +52,14 @@ def contact_loss(result, ax=None):
         for turns in (-1.0, 0.0, 1.0):  # a flight may pass the end of the period
             ax.axvspan(*(ends + turns * np.degrees(result.period)), color=ACCENT, alpha=0.25, lw=0)
         if flight.energy > NAMED * result.impact_energy:
-            place, at_top = np.mod(ends.mean(), np.degrees(result.period)), ax.get_xaxis_transform()
+            period, at_top = np.degrees(result.period), ax.get_xaxis_transform()
+            place = np.clip(np.mod(ends.mean(), period), 0.05 * period, 0.95 * period)  # clear of the frame
             paper = {"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0}
             ax.text(place, 0.97, f"{flight.energy:.2g} J", ha="center", va="top", transform=at_top, bbox=paper)
     for angle in np.degrees(result.reversals):
         ax.axvline(angle, color=ACCENT, lw=0.8, ls=":")
     ax.set(xlim=(0.0, np.degrees(result.period)), xlabel=FROM_X.axis, ylabel=f"force [{unit}]")
+    ax.set_xticks(np.linspace(0.0, np.degrees(result.period), 5))
     beside = ax.twinx()
     beside.plot(degrees, result.index_curve, color=LOAD, lw=1.0)
     beside.set_ylim(0.0, min(LARGEST_INDEX, 1.3 * max(1.0, result.index)))

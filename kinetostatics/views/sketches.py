@@ -52,8 +52,8 @@ def sketch(machine, dimensions=True, angle=None, ax=None):
 
     Parameters
     ----------
-    machine : Mechanism, Scene, variant of a case, or Solution
-        Of one design.
+    machine : Mechanism, Scene, variant of a case, Solution, or mapping of label to one
+        Of one design. Several get a panel each.
     dimensions : bool
         Whether to show dimensions.
     angle : float, optional

@@ -361,7 +361,8 @@ def working_curves(solution):
     """
     for group in solution.mechanism.groups:
         for led in group.led:
-            outward, cam = (-1.0, group.cam) if led.body == FRAME else (1.0, group.disk)
+            fixed = led.body == FRAME
+            outward, cam = -1.0 if fixed else 1.0, getattr(group, "cam" if fixed else "disk", None)
             friction = solution.friction.acting.get(led.force.replace("_force", ""))
             radius = group.rollers.get(led.joint) if friction is None else friction.roller_radius
             if led.flat or radius is None or not hasattr(cam, "profile"):

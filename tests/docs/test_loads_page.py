@@ -89,6 +89,9 @@ def test_cells_agree_with_what_is_found_by_hand(tmp_path, monkeypatch, capsys):
         exec(compile(re.sub(r"^ks\.plots.*$", "", code, flags=re.MULTILINE), "loads", "exec"), names)
     told = capsys.readouterr().out
     assert [float(value) < 1e-12 for value in re.findall(r"largest difference (\S+)", told)] == [True] * 3
+    press = ks.Scene(names["press"], names["speed"], loads=[ks.ProcessForce(names["punch"])]).solve(720)
+    off = abs(1.0 - np.mean(press.balancing_torque) / press.mean_torque)
+    assert f"samples would be {100 * off:.1f} % off" in text_of(DOCS / PAGE)
     works = re.findall(r"work of a \w+ (\S+) J, by hand (\S+) J", told)
     assert len(works) == 4
     assert all(one == other for one, other in works)

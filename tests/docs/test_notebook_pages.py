@@ -1,9 +1,14 @@
 """Pages with code fold their assertions, and their tables have one header row and at most six digits."""
 
+from types import SimpleNamespace
+
+import pytest
+
 from support import pages
 from support.every import every
 
 pytestmark = pages.needed
+nodes = pytest.importorskip("docutils.nodes", reason="docutils is not installed (extra: docs)")
 shown = pages.script("notebook_pages")
 INDEXED = """<thead>
     <tr style="text-align: right;">
@@ -49,3 +54,17 @@ def test_tables_are_tidy(html, expected):
 )
 def test_assertions_are_apart(code, kept, checks):
     assert shown.split_checks(code) == (kept, checks)
+
+
+def test_only_empty_headers_are_dropped():
+    heads = [nodes.thead("", nodes.row("", nodes.entry("", nodes.paragraph(text=text)))) for text in ("", "mass")]
+    doctree = nodes.section("", *(nodes.tgroup("", head) for head in heads))
+    shown.clean(SimpleNamespace(), doctree)
+    assert [head.astext() for head in doctree.findall(nodes.thead)] == ["mass"]
+
+
+def test_a_code_cell_shows_its_assertions_in_a_fold():
+    block = nodes.literal_block("", "a = 1\nassert a == 1")
+    doctree = nodes.section("", nodes.container("", block, nb_element="cell_code_source"))
+    shown.clean(SimpleNamespace(), doctree)
+    assert [part.astext() for part in doctree[0]] == ["a = 1", shown.FOLD[0], "assert a == 1", shown.FOLD[1]]

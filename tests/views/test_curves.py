@@ -121,6 +121,14 @@ def test_a_batch_is_refused_with_its_shape(axes):
         ks.plots.torque(batch, ax=axes)
 
 
+def test_shorter_period_is_repeated(axes):
+    twin = ks.load_case("v_twin")
+    ks.plots.torque({name: twin.solve(name, 72) for name in ("plain", "firing")}, ax=axes)
+    angle, torque = axes.lines[0].get_data()
+    assert angle.max() > 710.0
+    np.testing.assert_allclose(np.interp(360.0 + angle[:50], angle, torque), torque[:50], rtol=1e-12)
+
+
 def test_coincident_marks_share_a_label(axes):
     def press(motion):
         return np.where(np.abs(np.degrees(motion.crank_angle) - 170) < 10.1, 40e3, 0.0)

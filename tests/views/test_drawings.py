@@ -152,6 +152,52 @@ def test_guide_spring_is_drawn_beyond_the_slider(axes):
     assert np.allclose(springs[0][[0, -1], 1], 0.0)
 
 
+def test_mass_centre_and_force_off_their_link_are_joined_to_it(axes):
+    force = ks.Force(100.0, at=("coupler", 0.1, -0.08))
+    solution = drawn(FOUR_BAR, axes, [force])
+    for place in ((0.2, 0.05), (0.1, -0.08)):
+        ends = (solution.position(("coupler", along, across))[:, 0] for along, across in (place, (place[0], 0.0)))
+        assert len(lines_between(axes, *ends)) == 1
+    assert not list(Shape(strokes.whole_turn(solution)).ties(solution, links=("rocker",)))  # its centre lies on it
+
+
+def test_spring_from_far_away_leaves_the_machine_large(axes):
+    spring = ks.PointSpring(10.0, 0.0, between=("B", (8.0, 0.0)))
+    solution = drawn(SAW, axes, [spring])
+    assert np.ptp(axes.get_xlim()) < 2.0
+    b = solution.position("B")[:, 0]
+    ((start, *_, end),) = [
+        line.get_xydata()
+        for line in axes.lines
+        if np.allclose(line.get_xydata()[:1], [b]) and len(line.get_xydata()) > 10
+    ]
+    assert_allclose((end - start)[1], 0.0, atol=1e-12)
+    assert 0.0 < (end - start)[0] < 0.5
+
+
+def test_working_curve_is_drawn_on_each_side_that_is_pressed(axes):
+    cam, roller = ks.cams.CosineLaw(0.3, 2.0), ks.Roller(0.05, 0.04, 210e9, 0.3)
+    saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0), roller=roller)
+    for loads, sides in ((ks.ProcessForce(-3e4), ("disk", "ring")), ((), ("ring",))):
+        solution = ks.Scene(saw, 10.0, loads=loads).solve(24)
+        found = list(strokes.working_curves(solution))
+        assert [body for body, _ in found] == ["frame"] * len(sides)
+        for (_, points), side in zip(found, sides, strict=True):
+            assert_allclose(points[:, :-1], cam.profile(0.05, points.shape[1] - 1, side).surface, atol=1e-15)
+    ks.plots.mechanism(solution, ax=axes)
+    assert "working curve of the cam" in [line.get_label() for line in axes.lines]
+    assert not list(strokes.working_curves(ks.Scene(ks.cam_crank_slider(cam, 2.02), 10.0).solve(8)))
+
+
+def test_working_curve_of_a_follower_turns_with_the_crank():
+    follower = ks.RollerFollower(ks.laws.cosine(0.03, 0.12), roller=ks.Roller(0.02, 0.02, 210e9, 0.3))
+    machine = ks.Mechanism("valve", ks.Crank(None), (follower,))
+    solution = ks.Scene(machine, 10.0, loads=ks.ProcessForce(-600.0, on="follower")).solve(24)
+    (stroke,) = strokes.moving_surfaces(solution, solution)
+    gap = np.hypot(*(stroke.points - solution.position("R")[:, None])).min(axis=0)
+    assert_allclose(gap, 0.02, atol=1e-5)
+
+
 def test_counterweight_is_drawn_at_its_centre(axes):
     pose = drawn(SAW, axes)
     sector = max((patch.get_xy() for patch in axes.patches), key=len)
@@ -376,6 +422,18 @@ def closing():
 def line(ax, label):
     (found,) = (item for item in ax.get_lines() if item.get_label() == label)
     return np.array(found.get_data())
+
+
+def test_cam_of_a_flat_face_is_drawn_with_faces_that_touch_it():
+    law = ks.laws.cosine(0.004, 0.03)
+    ax = ks.plots.cam_profile(ks.FlatFollower(law, ks.Guide.at(np.pi / 2)).disk, angles=(0, 90))
+    faces = [line.get_xydata() for line in ax.lines if len(line.get_xdata()) == 2 and line.get_linestyle() == "-"]
+    assert len(faces) == 2
+    (surface,) = (line.get_xydata() for line in ax.lines if line.get_label() == "working curve")
+    for start, end in faces:
+        normal = np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
+        normal *= np.sign(normal @ start)
+        assert (surface @ normal).max() == pytest.approx(normal @ start, rel=1e-5)
 
 
 @pytest.mark.parametrize("side", ["disk", "ring"])

@@ -47,6 +47,11 @@ def test_single_solution_is_one_bar_in_watts(axes):
     assert axes.get_ylabel() == "mean power lost [W]"
 
 
+def test_single_solution_has_no_name(saw, axes):
+    ax = ks.plots.losses(saw["plain"], ax=axes)
+    assert [text.get_text() for text in ax.get_xticklabels()] == [""]
+
+
 def test_drag_without_friction_is_drawn(axes):
     bar = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
     s = ks.Scene(bar, 10.0, loads=ks.Torque(5.0, on="rocker", opposing=True)).solve(36)

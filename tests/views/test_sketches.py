@@ -132,7 +132,7 @@ def test_the_default_angle_is_one_that_can_be_assembled(axes):
     ("machine", "message"),
     [
         (3.0, "machine must be a Mechanism or a Scene"),
-        ({}, "machine must be a Mechanism or a Scene"),
+        ({}, "there is nothing to draw"),
         (ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), "plots show one design"),
     ],
 )

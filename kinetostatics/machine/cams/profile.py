@@ -134,7 +134,7 @@ class Profile:
         if hollow is not None and radius >= -hollow.value:
             raise ParameterError(
                 f"cutter_path: a cutter of radius {radius:.6g} m does not fit into the hollow of the {self.side} at "
-                f"crank angle {np.degrees(hollow.angle):.6g} deg, whose radius is {-hollow.value:.6g} m; take a smaller"
+                f"{_place(self.cam, hollow.angle)}, whose radius is {-hollow.value:.6g} m; take a smaller"
             )
         side = SIDE_SIGNS[self.side]
         angle = sampled_angles(self.cam)
@@ -143,8 +143,8 @@ class Profile:
         if nearest.value < radius * (1.0 - CUT_TOLERANCE):
             raise ParameterError(
                 f"cutter_path: a cutter of radius {radius:.6g} m cuts into another part of the {self.side}. Its centre "
-                f"comes as near as {nearest.value:.6g} m to the working curve at crank angle "
-                f"{np.degrees(nearest.angle):.6g} deg; take a smaller"
+                f"comes as near as {nearest.value:.6g} m to the working curve at {_place(self.cam, nearest.angle)}; "
+                "take a smaller"
             )
         return self.surface - side * radius * self.normal
 
@@ -187,13 +187,13 @@ class Profile:
         peak, bend, found = self.largest_pressure_angle, self.smallest_curvature_radius, []
         if steepest is not None and peak.value > steepest:
             found.append(
-                f"the pressure angle reaches {np.degrees(peak.value):.6g} deg at crank angle "
-                f"{np.degrees(peak.angle):.6g} deg, more than {np.degrees(steepest):.6g}"
+                f"the pressure angle reaches {np.degrees(peak.value):.6g} deg at {_place(self.cam, peak.angle)}, more "
+                f"than {np.degrees(steepest):.6g}"
             )
         if sharpest is not None and bend is not None and bend.value < sharpest:
             found.append(
-                f"the working curve is as sharp as {bend.value:.6g} m at crank angle {np.degrees(bend.angle):.6g} deg, "
-                f"less than {sharpest:.6g}"
+                f"the working curve is as sharp as {bend.value:.6g} m at {_place(self.cam, bend.angle)}, less than "
+                f"{sharpest:.6g}"
             )
         return tuple(found)
 
@@ -251,13 +251,24 @@ def _curves(cam, radius, angle, side):
     return pitch, normal, pitch + SIDE_SIGNS[side] * radius * normal
 
 
+def crank_degrees(cam, angle):
+    """Crank angles at polar angles of a cam, degrees: the same, but for the cam of a follower, which turns."""
+    convert = getattr(cam, "crank_angle", None)
+    return np.degrees(np.mod(convert(angle), TURN) if convert else angle)
+
+
+def _place(cam, angle):
+    """Words for the crank angle at a polar angle of a cam."""
+    return f"crank angle {float(crank_degrees(cam, angle)):.6g} deg"
+
+
 def _undercut_problems(cam, radius, side):
     """Problems of a roller on this side of the pitch curve, as sentences with the crank angles."""
     least = lowest(lambda angle: cam.radius(angle)[0], cam)
     if not least.value > 0:
         yield (
-            f"the pitch curve must go around O, but its radius falls to {least.value:.6g} m at crank angle "
-            f"{np.degrees(least.angle):.6g} deg"
+            f"the pitch curve must go around O, but its radius falls to {least.value:.6g} m at "
+            f"{_place(cam, least.angle)}"
         )
         return
     sharpest, angle = highest(lambda angle: _roller_side_curvature(cam, angle, side), cam), sampled_angles(cam)
@@ -266,26 +277,26 @@ def _undercut_problems(cam, radius, side):
         if not sharp.all():
             order = np.roll(np.arange(sharp.size), -int(np.argmin(sharp)))
             edges = np.flatnonzero(np.diff(np.concatenate([[0], sharp[order].astype(int), [0]])))
-            spans = np.degrees(angle[order[[edges[::2], edges[1::2] - 1]]]).T
+            spans = crank_degrees(cam, angle[order[[edges[::2], edges[1::2] - 1]]]).T
+            spans = spans[:, ::-1] if hasattr(cam, "crank_angle") else spans  # polar angles fall as the crank turns
             where = " and ".join(f"from {start:.4g} to {stop:.4g} deg" for start, stop in spans) or "there alone"
         yield (
             f"a roller of radius {radius:.6g} m undercuts the {side}. The pitch curve bends with a radius of "
-            f"{1.0 / sharpest.value:.6g} m at crank angle {np.degrees(sharpest.angle):.6g} deg (too sharp {where}); "
-            "the roller's must be less"
+            f"{1.0 / sharpest.value:.6g} m at {_place(cam, sharpest.angle)} (too sharp {where}); the roller's must be "
+            "less"
         )
         return
     pitch, _, made = _curves(cam, radius, angle, side)
     nearest = _nearest(pitch, made, angle)
     if nearest.value < radius * (1.0 - CUT_TOLERANCE):
         yield (
-            f"a roller of radius {radius:.6g} m cuts into another part of the {side}. Where it touches at crank angle "
-            f"{np.degrees(nearest.angle):.6g} deg, its centre comes as near as {nearest.value:.6g} m later; "
-            "take a smaller"
+            f"a roller of radius {radius:.6g} m cuts into another part of the {side}. Where it touches at "
+            f"{_place(cam, nearest.angle)}, its centre comes as near as {nearest.value:.6g} m later; take a smaller"
         )
     elif side == "disk" and least.value <= radius:
         yield (
-            f"a roller of radius {radius:.6g} m covers O, as its centre comes as near as {least.value:.6g} m at crank "
-            f"angle {np.degrees(least.angle):.6g} deg; take a smaller"
+            f"a roller of radius {radius:.6g} m covers O, as its centre comes as near as {least.value:.6g} m at "
+            f"{_place(cam, least.angle)}; take a smaller"
         )
 
 

@@ -6,11 +6,13 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from ...errors import NotGivenError, ParameterError
-from ...numbers.arithmetic import is_foreign_array
+from ...numbers.arithmetic import TURN, is_foreign_array
 from .table_pieces import turning_points
 
 CENTRED = 1e-9
 """Distance of mid-stroke from the foot of O on the guide, relative to the stroke, below which it is in the middle."""
+FIRST_ANGLE = np.radians(-15.0)
+"""Least crank angle of a dead centre, rad: those near 0 stay there, whatever the sign of an offset or a rounding."""
 _DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
 """By mechanism and slider: its dead centres."""
 
@@ -18,9 +20,10 @@ _DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
 def dead_centres(motion, slider):
     """Crank angles, rad, and coordinates, m, of the far and the near dead centre of a slider: two pairs.
 
-    Numbers, or arrays (designs, 1); NaN where the mechanism does not close all round. On a slider whose stroke is
-    centred on O, as that of a yoke, the far dead centre is ahead in the direction of the guide. `ParameterError` if the
-    slider dwells or does not go to and fro once, `NotGivenError` if lengths are traced numbers or enclosures.
+    Numbers, or arrays (designs, 1); NaN where the mechanism does not close all round. The crank angles lie in the
+    period that begins at `FIRST_ANGLE`. On a slider whose stroke is centred on O, as that of a yoke, the far dead
+    centre is ahead in the direction of the guide. `ParameterError` if the slider dwells or does not go to and fro once,
+    `NotGivenError` if lengths are traced numbers or enclosures.
     """
     known = _DEAD_CENTRES.setdefault(motion.mechanism, {})
     if slider not in known:
@@ -55,6 +58,8 @@ def _dead_centres(mechanism, slider):
         angle = np.full((*closes.shape, 2), np.nan)
         if closes.any():
             angle[closes] = stops[closes, :2]
+            period = TURN * mechanism.turns
+            angle = np.where(angle >= FIRST_ANGLE + period, angle - period, angle)
         place = np.broadcast_to(travel(angle).position, angle.shape)
     is_far = place.sum(axis=-1, keepdims=True) >= -CENTRED * np.ptp(place, axis=-1, keepdims=True)  # the one ahead
     order = np.argsort(np.where(is_far, -place, place), axis=-1)

@@ -63,7 +63,8 @@ class Table:
         mechanism.
     zero : float, text or "TDC" or "BDC", optional
         Crank angle at which the table's angle is 0, rad from +x, or text with a unit ("90 deg"); by default 0. "TDC" is
-        the dead centre of the slider farther from the crank, "BDC" the nearer one; both follow the lengths. Without a
+        the dead centre of the slider farther from the crank, "BDC" the nearer one; both follow the lengths. Over a
+        period of several turns it is the one between -15 and 345 deg; for a later turn add turns to `x`. Without a
         zero, a `HintWarning` reports a force on a slider whose largest value is far from both dead centres.
     sense : +1 or -1
         Direction in which the table's angle increases: +1 counter-clockwise, as the library's crank angle, -1
@@ -127,7 +128,7 @@ class Table:
             wrong_period,
             None if slider is None else checks.Name().check(slider, "slider")[1],
             None if back is None or over == "travel" else 'back is for a table over="travel"',
-            None if slider is None or over == "travel" or _is_dead_centre(zero) else SLIDER_WORDS,
+            None if slider is None or over == "travel" or isinstance(zero, str) else SLIDER_WORDS,
             wrong_zero or (zero is not None and by_angle and f"zero {by_angle}") or None,
             wrong_sense or (sense == -1 and by_angle and f"sense {by_angle}") or None,
         )
@@ -150,7 +151,7 @@ class Table:
                 arrays = {name: values[:-1] for name, values in arrays.items()}
             if sense == -1:
                 arrays = {"x": -arrays["x"][::-1], "y": arrays["y"][::-1]}
-            if zero is not None and not _is_dead_centre(zero):
+            if isinstance(zero, float):
                 arrays["x"], zero, sense = arrays["x"] + zero, 0.0, 1
         else:
             few = "at least 2 rows are needed, got 1; a value that does not change is no table"
@@ -256,7 +257,7 @@ class Table:
     @property
     def from_dead_centre(self):
         """Whether its angles count from a dead centre of a slider."""
-        return _is_dead_centre(self.zero)
+        return isinstance(self.zero, str)
 
     @property
     def needs_slider(self):
@@ -288,13 +289,7 @@ class Table:
         return motion.crank_angle - self.zero_angle(motion) if self.from_dead_centre else motion.crank_angle
 
     def zero_angle(self, motion):
-        """Crank angle of the dead centre from which its angles count, rad: a number, or an array (designs, 1).
-
-        Raises
-        ------
-        ParameterError
-            The mechanism does not close all round, or the slider has not one far and one near dead centre.
-        """
+        """Crank angle of the dead centre from which its angles count, rad; `ParameterError` where there is none."""
         angle = dead_centres(motion, self._slider(motion))[0][DEAD_CENTRES.index(self.zero)]
         if np.any(missing := np.isnan(angle)):
             raise ParameterError(
@@ -427,13 +422,9 @@ class Table:
         return hash(self._content)
 
 
-def _is_dead_centre(zero):
-    return isinstance(zero, str) and zero in DEAD_CENTRES
-
-
 def _angle_or_dead_centre(zero):
     """The zero of a table over the angle, rad, or the name of a dead centre, and its problem or None."""
-    if zero is None or _is_dead_centre(zero):
+    if zero is None or (isinstance(zero, str) and zero in DEAD_CENTRES):
         return zero, None
     if isinstance(zero, str):
         try:
@@ -441,4 +432,4 @@ def _angle_or_dead_centre(zero):
         except ValueError as error:
             return zero, f"zero {error}; or write {' or '.join(map(repr, DEAD_CENTRES))}"
     found, problem = checks.Number("rad").check(zero, "zero")
-    return found, "zero must be one angle, not an array" if problem is None and np.ndim(found) else problem
+    return found, problem or (None if isinstance(found, float) else "zero must be one angle, not an array")

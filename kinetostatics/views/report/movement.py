@@ -33,15 +33,19 @@ def to_base64(values, kind="<f4"):
 
 
 def movements(machines):
-    """Drawings of machines by name, and the largest force and torque; machines of like size have one frame."""
+    """Drawings of machines by name, and the largest torque; machines of like size have one frame and force scale."""
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}
     solutions = [machine.solution for machine in machines.values()]
-    force = max((_largest(solution, name) for solution in solutions for name in solution.reactions), default=0.0)
+    forces = {
+        name: max((_largest(shape.turn, joint) for joint in shape.turn.reactions), default=0.0)
+        for name, shape in shapes.items()
+    }
     torque = max(float(np.nanmax(np.abs(solution.balancing_torque), initial=0.0)) for solution in solutions)
     frames: dict[str, dict[str, Any]] = {}
     drawings = {}
     for names in _of_like_size(shapes):
         size = max(shapes[name].size for name in names)
+        force = max(forces[name] for name in names)
         scale, boxes = ARROW_REACH * size / force if force else 0.0, []
         for name in names:
             drawings[name] = _drawing(name, shapes[name], scale, MAX_ARROW * size, boxes)
@@ -49,7 +53,7 @@ def movements(machines):
         low, high = np.nanmin(corners, axis=1), np.nanmax(corners, axis=1)
         frame = {"box": [*map(float, low), *map(float, high)], "scale": scale, "longest": MAX_ARROW * size}
         frames |= dict.fromkeys(names, frame)
-    return {"drawings": [drawings[name] | frames[name] for name in shapes], "force": force, "torque": torque}
+    return {"drawings": [drawings[name] | frames[name] for name in shapes], "torque": torque}
 
 
 def _of_like_size(shapes):

@@ -177,12 +177,12 @@ def test_arrows_have_one_scale_for_all_machines():
     frames = [{key: drawing[key] for key in ("box", "scale", "longest")} for drawing in found["drawings"]]
     frame = frames[0]
     assert frames == [frame] * len(frames)
+    solution = subject("sawframe_2r63").machines["plain"].solution
+    largest = max(np.hypot(*solution.reaction(name)).max() for name in solution.reactions)
     shapes = [Shape(machine.solution) for machine in subject("sawframe_2r63").machines.values()]
     size = max(shape.size for shape in shapes)
-    assert np.isclose(frame["scale"] * found["force"], ARROW_REACH * size)
+    assert np.isclose(frame["scale"] * largest, ARROW_REACH * size)
     assert np.isclose(frame["longest"], MAX_ARROW * size)
-    solution = subject("sawframe_2r63").machines["plain"].solution
-    assert np.isclose(found["force"], max(np.hypot(*solution.reaction(name)).max() for name in solution.reactions))
 
 
 def test_small_machine_beside_large_ones_has_its_own_frame():
@@ -230,5 +230,5 @@ def test_unbounded_reaction_hides_no_other():
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ks.ConditionWarning)
         found = movements(subject_of(ks.Scene(parallelogram, 10.0, loads=ks.Gravity())).machines)
-    assert np.isfinite(found["force"])
+    assert found["drawings"][0]["scale"] > 0.0
     assert np.isfinite(found["drawings"][0]["box"]).all()

@@ -99,8 +99,8 @@ class Drawing {
 
   // A force of a round size as long as its arrow.
   rule(width, height) {
-    const { force, forceUnit } = this.data, scale = this.longer * this.machine.scale;
-    if (!force) return;
+    const { forceUnit } = this.data, scale = this.longer * this.machine.scale;
+    if (!scale) return;
     const most = 0.28 * width / (scale * this.scale) * forceUnit.factor;
     const power = 10 ** Math.floor(Math.log10(most));
     const size = [5, 2, 1].map((step) => step * power).find((value) => value <= most);
