@@ -208,7 +208,7 @@ def test_soft_steel_is_as_soft_as_the_standard_tells(pressure, brinell):
 @pytest.mark.parametrize(
     ("function", "value", "words"),
     [
-        *((pressure_from_hardness, value, "tells of 180 to 400 HB, got ") for value in (179.0, 401.0, 500.0)),
+        *((pressure_from_hardness, value, "covers 180 to 400 HB, got ") for value in (179.0, 401.0, 500.0)),
         *((pressure_from_hardness, value, "pressure_from_hardness") for value in (0.0, "300")),
         *((hardness_from_pressure, value, "hardness_from_pressure") for value in (-1.0, float("nan"), "1 GPa", None)),
     ],
@@ -307,7 +307,7 @@ PULSE = np.radians(0.14)
 def pulse(place, height):
     """Table of a pulse 0.14 deg wide, flat over half its width."""
     corners = place + PULSE * np.array([-0.5, -0.25, 0.25, 0.5])
-    return ks.Table([0.0, *corners, 2 * np.pi], height * np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
+    return ks.Table([0.0, *corners, 2 * np.pi], height * np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]), zero=0.0)
 
 
 def around(place):

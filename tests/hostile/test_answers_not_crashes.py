@@ -235,7 +235,7 @@ NO_PLACES = [
     ),
     (
         placed(lambda placement: placement.joints.update(B=placement.joints["Q"])),
-        r"is attached to 'A', but its place asks for 'Q'",
+        r"is attached to 'A', but its place uses 'Q'",
     ),
     (own(resolve=lambda self, placement, loads, along: None), r"its resolve must return a Resolved"),
 ]
