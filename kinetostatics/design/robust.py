@@ -39,6 +39,7 @@ class Spread:
     ----------
     quantile : float
         Between 0 and 1; a low one, such as 0.05, for an output to maximise.
+    spreads : mapping of path to text
         Deviations from the design: "normal 0 mm +- 0.05 mm", "-2..2 mm", or in per cent of the design's value "normal
         0 % +- 0.5 %". Deviations count from the median, so the texts of a case's [tolerances] fit.
     samples : int

@@ -118,7 +118,7 @@ class Motor:
 
     @staticmethod
     def constant(torque, *, transmission=1.0, inertia=0.0) -> "Motor":
-        """Motor of constant `torque`, N m at its shaft, not 0 (negative: brake); other arguments as for `kloss`.
+        """Motor of constant `torque`, N m, not 0 (negative: brake); `transmission` and `inertia` as for `kloss`.
 
         Examples
         --------

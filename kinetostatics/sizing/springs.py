@@ -74,8 +74,8 @@ class SpringMaterial(checks.Checked):
         Pa and kg/m3.
     set_share : float
         Stress in torsion at which the spring sets, over the tensile strength.
+    unpeened, peened : (mean, alternating)
         Stresses in torsion for endless life, Pa; by default Zimmerli's values, which apply to all spring steels.
-        Stresses in torsion of endless life, Pa; by default Zimmerli's, which hold for all spring steels.
 
     Raises
     ------

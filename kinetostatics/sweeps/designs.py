@@ -101,7 +101,7 @@ def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
 def sobol(spreads, count, seed=0) -> pd.DataFrame:
     """Designs of a scrambled Sobol sequence, evenly spread over all parameters together.
 
-    Arguments and errors as for `latin_hypercube`; `count` is best a power of two.
+    Arguments `spreads`, `count` (best a power of two) and `seed`, and errors, as for `latin_hypercube`.
 
     Examples
     --------
@@ -118,7 +118,7 @@ def sobol(spreads, count, seed=0) -> pd.DataFrame:
 def random(spreads, count, seed=0) -> pd.DataFrame:
     """Independent random designs.
 
-    Arguments and errors as for `latin_hypercube`.
+    Arguments `spreads`, `count` and `seed`, and errors, as for `latin_hypercube`.
 
     Examples
     --------
