@@ -344,7 +344,7 @@ BOTH = {"crank": HEAVY, "coupler": HEAVY}
         (lambda: optimal(MASSLESS, crank=HEAVY), "crank-slider has no mass to balance"),
         (lambda: partial(SKEW, "across", crank=HEAVY), "lies -0.06 m off the line A-B, .* balance the coupler too"),
         (lambda: partial(CAM, crank=HEAVY), "pin A of a cam-balanced .* varying distance from O with 18 kg on it"),
-        (lambda: full(CAM, **BOTH), "varying distance from O .* use `optimal`, or a plain crank-slider"),
+        (lambda: full(CAM, **BOTH), "varying distance from O .* Use `optimal`, or a plain crank-slider"),
         (lambda: partial(FOUR_BAR, crank=HEAVY), "for crank-sliders, not for a four-bar"),
         (lambda: partial(SIX_BAR, crank=HEAVY), "six-bar"),
         (lambda: full(SIX_BAR, crank=HEAVY, rocker=HEAVY), "six-bar"),

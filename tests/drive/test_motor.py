@@ -115,7 +115,7 @@ def test_stronger_motor_carries_the_load_as_advised():
 
     with pytest.raises(ks.errors.DriveError, match="too weak") as caught:
         steady(1.0)  # the load is least at rest, 20 N m, where the motor does not give its most
-    times = float(str(caught.value).partition("give a motor ")[2].partition(" times")[0])
+    times = float(str(caught.value).partition("Give a motor ")[2].partition(" times")[0])
     assert 1.6 < times <= 1.667
     assert steady(1.001 * times).mean_speed < 2.0
 

@@ -235,7 +235,7 @@ NO_PLACES = [
     ),
     (
         placed(lambda placement: placement.joints.update(B=placement.joints["Q"])),
-        r"is attached to 'A', but its place asks for 'Q'",
+        r"is attached to 'A', but its place uses 'Q'",
     ),
     (own(resolve=lambda self, placement, loads, along: None), r"its resolve must return a Resolved"),
 ]
@@ -275,9 +275,13 @@ def test_programs_of_such_groups_are_refused(group, message):
 def test_constant_closure_without_position_is_refused():
     within = ks.solve(with_group(ALWAYS), TURN, crank_speed=10.0)
     assert np.isfinite(within.balancing_torque).all()
-    with pytest.raises(ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ such"):
+    with pytest.raises(
+        ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ crank angles"
+    ):
         ks.solve(with_group(ALWAYS, 0.3), TURN, crank_speed=10.0)
-    with pytest.raises(ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ such"):
+    with pytest.raises(
+        ks.ParameterError, match=r"negative where its place finds no position, but is 1 at \d+ crank angles"
+    ):
         ks.check(ALWAYS(0.2))
 
 

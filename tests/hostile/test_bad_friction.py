@@ -153,7 +153,7 @@ def test_true_jamming_names_angle_and_flywheel():
     """The pin's lever mu radius, 0.3 m, is longer than the crank: its friction grows faster than inertia frees."""
     crank = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.1, 0.0))
     scene = ks.Scene(crank, 1.0, loads=ks.Gravity(), friction={"O": ks.PinFriction(1.5, 0.2)})
-    words = r"jams at crank angle 57\.2958 deg and 3 rad/s: .* only 0\.021 N m .* flywheel of ([\d.]+) kg m2 or more"
+    words = r"jams at crank angle 57\.2958 deg and 3 rad/s. .* only 0\.021 N m .* flywheel of ([\d.]+) kg m2 or more"
     with pytest.raises(ks.DriveError, match=words) as caught:
         ks.drive.coast(scene, 0.001, from_angle=1.0, from_speed=3.0, until=0.01)
     assert math.degrees(caught.value.crank_angle) == pytest.approx(57.2958, rel=1e-5)

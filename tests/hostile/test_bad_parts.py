@@ -55,7 +55,7 @@ def test_links_are_links(make, bad):
 
 @every("bad", [None, 0.3, "circle", ks.cams.Circle, ks.Link(), {}])
 def test_a_cam_is_made_and_has_a_pitch_curve(bad):
-    with pytest.raises(ks.ParameterError, match=r"cam must be one of ks\.cams or alike"):
+    with pytest.raises(ks.ParameterError, match=r"cam must be one of ks\.cams or similar"):
         ks.cam_crank_slider(bad, 2.0)
 
 

@@ -236,7 +236,7 @@ WRONG_TABLES = {
     "travel from the dead centre": (
         TRAVEL.replace("300", "0").replace("400", "100").replace("500", "200"),
         AREA,
-        "travel is the coordinate of the pin along the guide",
+        "Travel is the coordinate of the pin along the guide",
     ),
     "travel of no slider": (TRAVEL, f'{AREA}, slider = "slider2"', "slider is 'slider2', allowed: 'slider'"),
     "slider of an angle": (ANGLES, 'slider = "slider"', 'slider is for a table over="travel"'),

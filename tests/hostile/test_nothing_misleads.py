@@ -399,7 +399,7 @@ def test_angle_of_a_turning_rocker_is_continuous(mechanism, turns):
 )
 def test_what_grows_each_turn_has_no_extremes(mechanism, function, growth):
     s = ks.solve(mechanism, 0.5, crank_speed=3.0)
-    with pytest.raises(ks.ParameterError, match=f"grows by {growth}, as the angle of a link that makes full turns"):
+    with pytest.raises(ks.ParameterError, match=f"grows by {growth}. It has no extremes, like the angle of a link"):
         ks.extremes(s, function)
 
 

@@ -114,7 +114,7 @@ def pin_load(load):
 @every("kind", [ks.PointForce, lambda size, between: ks.PointSpring(size, 0.0, between=between), ks.PointDamper])
 def test_load_beside_a_cylinder_rod_is_questioned(between, kind):
     load = kind(1500.0, between=between)
-    with pytest.warns(ks.HintWarning, match=r"on 'A', a joint of the crank, so the rod does not carry it; .*\"rod\""):
+    with pytest.warns(ks.HintWarning, match=r"on 'A', a joint of the crank, so the rod does not carry it. .*\"rod\""):
         assert pin_load(load) < 50.0
 
 
@@ -141,7 +141,7 @@ def test_weight_along_the_guide_sets_no_bound(angle):
 def test_ratio_beyond_the_bound_names_the_bound():
     saw = ks.load_case("sawframe_2r63")
     limit = "ratio mean_absolute balancing_torque >= 1000"
-    with pytest.raises(ks.DesignError, match=r"a ratio of mean torques of about \d+ at most \(.* changes by some"):
+    with pytest.raises(ks.DesignError, match=r"a ratio of mean torques of about \d+ at most, within some"):
         ks.design.torque_free_cam(saw, cosine=2, limits=[limit])
 
 
@@ -152,7 +152,7 @@ def test_limits_and_reports_know_the_cam_radius():
     found = ks.design.torque_free_cam(saw, cosine=4, gravity=False, limits=[limit], shaft_radius=0.3)
     smallest = ks.extremes(found.scene.solve(360), "cam_radius").range[0]
     assert smallest == pytest.approx(0.29, rel=1e-6)
-    with pytest.warns(ks.HintWarning, match="cuts into the shaft: .* 290 mm from O, the shaft's radius is 300 mm; ask"):
+    with pytest.warns(ks.HintWarning, match="cuts into the shaft: .* 290 mm from O, .* 300 mm; require"):
         report = found.report()
     assert report.loc["smallest cam_radius [m]", "after"] == pytest.approx(smallest, rel=1e-9)
     with warnings.catch_warnings():

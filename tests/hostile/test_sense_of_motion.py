@@ -121,7 +121,7 @@ def test_starts_ask_for_the_stroke_that_begins(law, ratio, others):
 def test_weak_motor_names_one_torque_for_all_laws(law, sense):
     scene = press(ks.ProcessForce(STROKES[law]))
     weak = ks.drive.Motor.constant(20.0, transmission=sense)
-    with pytest.raises(ks.DriveError, match=r"the loads ask 166\.426 N m at rest, the motor gives 20 N m") as told:
+    with pytest.raises(ks.DriveError, match=r"the loads take 166\.426 N m at rest, the motor gives 20 N m") as told:
         ks.drive.start(scene, weak, 1.0, from_angle=-sense * 1.3, until=0.02)
     assert told.value.missing == pytest.approx(torque_of_1600_newton(1.3) - 20.0, rel=1e-9)
 

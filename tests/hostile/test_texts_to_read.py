@@ -106,7 +106,7 @@ NOT_A_TURN = {
     "the same angle twice": ([0, 90, 90, 180, 270], "", "angles must rise, but 90 deg follows 90 deg"),
     "to and fro": ([0, 90, 180, 90, 270], "", "angles must rise, but 90 deg follows 180 deg"),
     "degrees headed rad": (np.degrees(range(0, 360, 10)), "", "are they degrees under a heading of rad?"),
-    "radians headed deg": (np.radians(range(0, 360, 10)), "", "are the angles in the unit of their heading?"),
+    "radians headed deg": (np.radians(range(0, 360, 10)), "", "Are the angles in the unit of their heading?"),
 }
 
 

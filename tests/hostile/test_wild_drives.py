@@ -149,7 +149,7 @@ RUNNING = {
         1.0,
         r"11\.0607 N m are missing, .*Give a motor 1\.585 times as strong",
     ),
-    "hardly too weak": (PUMP, (torque(-18.95),), kloss(), 1.0, r"give a motor 1\.001 times as strong"),
+    "hardly too weak": (PUMP, (torque(-18.95),), kloss(), 1.0, r"Give a motor 1\.001 times as strong"),
     "weak line": (PUMP, (torque(-11.0),), Motor.linear(10.0, 100.0), 1.0, "1 N m are missing"),
     "weak table": (PUMP, (torque(-13.0),), TABLE, 1.0, "1 N m are missing"),
     "a motor that brakes": (PUMP, (ks.TorsionDamper(0.1, on="crank"),), Motor.constant(-5.0), 1.0, "that drives"),
@@ -159,10 +159,10 @@ RUNNING = {
     "below a table's end": (PUMP, (), TABLE, 1.0, "its table covers only 0 to 104.7 rad/s; give more rows"),
     "nothing holds it": (PUMP, (), Motor.constant(5.0), 1.0, r"nothing stabilises the speed.*a turn leaves 31\.4159 J"),
     "in balance at any speed": (PUMP, (torque(-5.0),), Motor.constant(5.0), 1.0, "nothing stabilises the speed"),
-    "tiny transmission": (PUMP, (), kloss(transmission=1e-12), 1.0, "give a stronger motor, or less inertia"),
+    "tiny transmission": (PUMP, (), kloss(transmission=1e-12), 1.0, "Give a stronger motor, or less inertia"),
     "huge transmission": (PUMP, (), kloss(transmission=1e12), 1.0, "so rigid .*give it its true slip"),
     "huge rotor": (PUMP, (), kloss(inertia=1e50), 1.0, r"an inertia of 1e\+50 kg m2 at the crank"),
-    "tiny motor": (PUMP, (), kloss(power=1e-12), 1.0, "give a stronger motor, or less inertia"),
+    "tiny motor": (PUMP, (), kloss(power=1e-12), 1.0, "Give a stronger motor, or less inertia"),
     "tiny slip": (PUMP, (), kloss(speed=104.7 * (1.0 - 1e-12)), 1.0, "so rigid .*give it its true slip"),
     "huge motor": (PUMP, (), kloss(power=1e12), 1.0, "so rigid .*give it its true slip"),
     "load without bound": (
@@ -185,7 +185,7 @@ def test_no_running_is_told_with_what_is_missing(of, loads, motor, flywheel, wor
 def test_the_missing_torque_is_a_number():
     with pytest.raises(ks.DriveError) as caught:
         steady(scene(torque(-30.0)), kloss(), 1.0)
-    stronger = float(re.search(r"give a motor ([\d.]+) times", str(caught.value))[1])
+    stronger = float(re.search(r"Give a motor ([\d.]+) times", str(caught.value))[1])
     assert caught.value.missing == pytest.approx(30.0 - 2.5 * 750.0 / 99.0, rel=1e-3)
     assert steady(scene(torque(-30.0)), kloss(power=750.0 * 1.01 * stronger), 1.0).mean_speed > 70.0
 
@@ -238,7 +238,7 @@ OTHERS = {
     "as even as no flywheel makes it": (
         lambda: ks.drive.flywheel(scene(), 1e-15, kloss()),
         ks.DriveError,
-        "give a stronger motor, or less inertia",
+        "Give a stronger motor, or less inertia",
     ),
     "flywheel for a weak motor": (
         lambda: ks.drive.flywheel(scene(torque(-30.0)), 0.01, kloss()),
@@ -249,7 +249,7 @@ OTHERS = {
     "start against a load": (
         lambda: start(scene(torque(-20.0)), kloss(), 1.0, until=1.0),
         ks.DriveError,
-        "the loads ask 20 N m at rest",
+        "the loads take 20 N m at rest",
     ),
     "start with a brake": (
         lambda: start(scene(), Motor.constant(-5.0), 1.0, until=1.0),

@@ -361,7 +361,7 @@ MOTOR = ks.drive.Motor.kloss(750.0, 99.0, synchronous_speed=104.7, overload=2.5,
 LIMITS = {"lift_off_speed": 5.0, "starting_torque": 3.0, "life": 10.0}
 ROUND = {"guide": ks.GuideFriction(0.1)}
 STANDS = "solve: friction acts against motion, but crank_speed and crank_acceleration are both 0"
-FREE = "without masses or at rest the machine needs no torque"
+FREE = "without masses or at rest the machine already needs no torque"
 CALLS = {
     "contact": (lambda w: ks.design.contact(cam_saw(w).solve(12)).largest_pressure.value, None),
     "life of a roller": (

@@ -74,7 +74,7 @@ def test_smoothed_law_gives_better_forces():
     angle = np.linspace(0.0, TURN, 360, endpoint=False)
     exact = laws.cosine(0.3, 2.0)
     rounded = np.round(exact(angle).position, 6)
-    with pytest.warns(UserWarning, match="table of a law: 360 points are too coarse or too noisy: x'' is uncertain"):
+    with pytest.warns(UserWarning, match="table of a law: 360 points are too coarse or too noisy. x'' is uncertain"):
         rough = laws.table(angle, rounded)
     smooth = laws.table(angle, rounded, noise=1e-6 / np.sqrt(12))
     phi = np.linspace(0.0, TURN, 1000)

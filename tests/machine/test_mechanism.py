@@ -30,7 +30,7 @@ def test_single_or_unlabelled_slider_needs_no_name(labels, meant):
 
 def test_one_of_several_sliders_must_be_named():
     with pytest.raises(
-        ks.QuantityError, match=r'engine has 2 sliders, slider1, slider2; say which, .*travel\("slider1"\)'
+        ks.QuantityError, match=r'engine has 2 sliders, slider1, slider2; choose one, .*travel\("slider1"\)'
     ):
         two_sliders("1", "2").slider_position  # noqa: B018
     with pytest.raises(ks.QuantityError, match="four-bar has no slider"):

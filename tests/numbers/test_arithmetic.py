@@ -111,7 +111,7 @@ def test_sum_takes_six_numbers_of_any_kind(name):
     number = NUMBERS[name]
     compensated_sum(*[number] * 6, None)
     assert type(compensated_sum(None, number)) is type(number)
-    with pytest.raises(ks.ParameterError, match="takes 6 numbers at most, got 7; make two of it"):
+    with pytest.raises(ks.ParameterError, match="adds at most 6 numbers, got 7; use two sums"):
         compensated_sum(*[number] * 7)
 
 

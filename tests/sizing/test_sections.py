@@ -451,9 +451,9 @@ def scene(mechanism=None, loads=(), speed=SPEED, **more):
     ("make", "bar", "message"),
     [
         (solved, "steel", "bar must be a ks.Bar"),
-        (solved, ks.Bar(6e-3, 3e-4, mass=150.0), r"its mass, 150 kg, differs by \+0 kg.*50 kg m2, by \+29.5 kg m2"),
+        (solved, ks.Bar(6e-3, 3e-4, mass=150.0), r"Its mass, 150 kg, differs by \+0 kg.*50 kg m2, by \+29.5 kg m2"),
         (solved, ks.Bar(6e-3, 3e-4, masses=[(1.2, 88.5)]), "its centre, 1.118 m from the first pin, by 0.118 m"),
-        (solved, ks.Bar(6e-3, 3e-4, masses=[(1.0, 200.0)]), r"its mass, 200 kg, differs by \+50 kg"),
+        (solved, ks.Bar(6e-3, 3e-4, masses=[(1.0, 200.0)]), r"Its mass, 200 kg, differs by \+50 kg"),
         (lambda: scene(ks.crank_slider(R, L, coupler=ks.Link(1.0, (1.0, 0.1), 1 / 3))), PLAIN, "by 0.1 m"),
         (
             lambda: scene(ks.crank_slider(R, L, coupler=ks.Link(2.0, 1.5, 0.5))),

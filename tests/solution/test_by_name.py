@@ -85,7 +85,7 @@ def test_a_lookup_fails_as_in_a_dict(s, call, kind):
 
 
 def test_the_error_keeps_its_text(s):
-    with pytest.raises(ks.QuantityError, match="ask for one at a time") as caught:
+    with pytest.raises(ks.QuantityError, match="use one at a time") as caught:
         s["O", "A"], s[["O", "A"]]
     error = caught.value
     assert str(error) == error.args[0] == str(pickle.loads(pickle.dumps(error))) == str(copy.copy(error))

@@ -71,7 +71,7 @@ REFUSED = [
     ),
     (lambda s: ks.plots.hodograph(s, "A", on="crnk"), "on is 'crnk', allowed: 'crank', 'block', 'coupler', 'slider'"),
     (lambda s: ks.plots.hodographs(s, marks=0.0), "marks"),
-    (lambda s: ks.plots.hodographs({}), "there are no solutions"),
+    (lambda s: ks.plots.hodographs({}), "give at least one solution to draw"),
     (lambda s: ks.plots.hodographs(pair_of_designs()), "single design"),
 ]
 

@@ -252,7 +252,7 @@ def _curves(cam, radius, angle, side):
 
 
 def crank_degrees(cam, angle):
-    """Crank angles at polar angles of a cam, degrees: the same, but for the cam of a follower, which turns."""
+    """Crank angles at polar angles of a cam, degrees: equal, except for the cam of a follower, which turns."""
     convert = getattr(cam, "crank_angle", None)
     return np.degrees(np.mod(convert(angle), TURN) if convert else angle)
 

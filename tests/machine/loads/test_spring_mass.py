@@ -304,7 +304,7 @@ def test_a_hint_names_the_surge_ratio_below_five():
             [4.0, 400.0],
             [0.1, 1.0],
             10.0,
-            "ratio is 1.99, .*with 0.1 kg it swings between its ends at 19.87 rad/s",
+            "ratio is 1.99, .*With 0.1 kg it swings between its ends at 19.87 rad/s",
         ),
         ([400.0, 400.0], [1.0, 1.0], [10.0, 20.0], "ratio is 3.14, .*drives it at 20 rad/s"),
     ],
@@ -391,7 +391,7 @@ def test_case_files_refuse_masses_that_are_none(tmp_path, mass, words):
 def test_counterweights_of_the_links_alone_are_refused(tmp_path):
     more = '[variants.plain.balancing]\nmethod = "partial"\nratio = 0.5\ncrank = { arm = "-0.3 m" }'
     written(tmp_path, "0 kg", more)
-    with pytest.raises(ks.CaseError, match="counterweights of the links alone, but a spring or shaft has mass"):
+    with pytest.raises(ks.CaseError, match="counterweights for links only, but a spring or shaft has mass"):
         written(tmp_path, "300 kg", more).solve("plain")
 
 

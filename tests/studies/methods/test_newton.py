@@ -108,7 +108,7 @@ def test_what_no_constraint_equation_gives_is_refused(method):
         (s, "pressure_angle", "no pressure_angle, but O, balancing_torque, slot_force"),
         (designs, "O", r"not a batch of shape \(2, 72\)"),
         (short, "O", "finds no position of crank-slider at 0"),
-        (foreign, "O", "Gear does not declare its pairs .* joints of gear"),
+        (foreign, "O", "Gear does not declare its pairs, .*: joints of gear"),
     ]:
         with pytest.raises(NotGivenError, match=words):
             method.prepare(refused, wanted, setting)

@@ -127,7 +127,7 @@ def test_rounding_bounds_are_shown():
     found = table_of(tables.certainty(made), row)[1]
     bounds = np.sort(made.machines["barely"].solution.error_bound("balancing_torque"))
     assert bounds[-3] <= float(found[0]) < 1.1 * bounds[-3]
-    assert re.fullmatch(r"but .* at (90|270)°, a jump or near a limit, the largest of 2 that stand out", found[1])
+    assert re.fullmatch(r"but .* at (90|270)°, a jump or near a limit, the largest of 2 outliers", found[1])
     rubbing = table_of(tables.certainty(RUBBING()), "rounding error of the torque, proven bound [N·m]")
     assert rubbing[1][1] == "not proven at 1 of 360 angles"
 
