@@ -307,7 +307,7 @@ PULSE = np.radians(0.14)
 def pulse(place, height):
     """Table of a pulse 0.14 deg wide, flat over half its width."""
     corners = place + PULSE * np.array([-0.5, -0.25, 0.25, 0.5])
-    return ks.Table([0.0, *corners, 2 * np.pi], height * np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]))
+    return ks.Table([0.0, *corners, 2 * np.pi], height * np.array([0.0, 0.0, 1.0, 1.0, 0.0, 0.0]), zero=0.0)
 
 
 def around(place):
