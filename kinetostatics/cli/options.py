@@ -70,7 +70,10 @@ def _units(text):
     try:
         if not all(equals for _, equals, _ in pairs):
             raise ParameterError('must be "force=kN,length=mm"')
-        return output_units({name.strip(): unit.strip() for name, _, unit in pairs}, "units")
+        chosen = {name.strip(): unit.strip() for name, _, unit in pairs}
+        if len(chosen) < len(pairs):
+            raise ParameterError("must name each dimension once")
+        return output_units(chosen, "units")
     except ParameterError as error:
         raise argparse.ArgumentTypeError(str(error).removeprefix("units: ")) from None
 

@@ -82,7 +82,8 @@ def lift_off_speed(solution, force="cam_force"):
     Returns
     -------
     float
-        0 if both sides carry it at rest, inf without lift-off up to 1000 times the crank speed.
+        0 if both sides carry it at rest, or loads pull a flat face off at rest; inf without lift-off up to 1000 times
+        the crank speed.
 
     Raises
     ------
@@ -101,7 +102,8 @@ def lift_off_speed(solution, force="cam_force"):
     _require(solution, "lift_off_speed", force)
     fast = _mean_speed(solution)
     angle, ends = _angles(solution), extrema(_solution_at(solution, REST_SPEED_RATIO * fast, 0.0), force).range
-    if not ends[0] * ends[1] > 0.0:
+    one_sided = any(led.flat for group in solution.mechanism.groups for led in group.led if led.force == force)
+    if not ends[0] * ends[1] > 0.0 or (one_sided and ends[0] < 0.0):
         return 0.0
     rest, moving, faster = (
         _force(solution, force, speed, angle) for speed in (REST_SPEED_RATIO * fast, fast, 2.0 * fast)

@@ -143,8 +143,13 @@ def table_hints(motion):
 
 
 def _peak_hints(motion, load, table):
-    """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres."""
-    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first if _is_diagram(table) else None
+    """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres.
+
+    The follower of a cam is no piston, so it gets none.
+    """
+    is_follower = any(led.link == load.on for group in motion.mechanism.groups for led in group.led)
+    is_piston = not is_follower and _is_diagram(table)
+    rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first if is_piston else None
     if rate is None or not checks.has_known_values(rate):
         return
     peaks = table.x[table.y / table.largest >= PEAK_SHARE]
@@ -158,7 +163,7 @@ def _peak_hints(motion, load, table):
     distance = _turn_distance(peaks[:, None], angles[:, None]).min(axis=(1, 2))
     far = np.flatnonzero(distance > MAX_PEAK_DISTANCE)
     if far.size:
-        top, bottom = np.degrees(angles[far[0]]) % 360.0
+        top, bottom = np.round(np.degrees(angles[far[0]]), 6) % 360.0  # not 5e-14 deg
         yield (
             f"{load.title}: the largest value of its table, {table.largest:.6g} N at {np.degrees(peaks[0]):.4g} deg, "
             f"is {np.degrees(distance[far[0]]):.4g} deg from the dead centres of {load.on!r}, TDC at {top:.4g} deg and "

@@ -68,7 +68,7 @@ def sketch(machine, dimensions=True, angle=None, ax=None):
     Raises
     ------
     ParameterError
-        The argument is no machine, or a batch of designs.
+        The argument is no machine, or a batch of designs, or it does not close at the crank angle.
 
     Examples
     --------
@@ -86,6 +86,10 @@ def sketch(machine, dimensions=True, angle=None, ax=None):
     solution, given = single_solution(solution), ax
     angle = _clearest_angle(solution) if angle is None else angle
     angle, ax = checks.single_numbers("sketch", angle=(angle, "deg", {}))["angle"], axes(given)
+    motion = at_angles(solution, np.array([angle]))
+    is_open = any(np.isnan(motion.position(name)).any() for name in motion.mechanism.joints)
+    title = motion.mechanism.name
+    checks.require("sketch", f"{title} does not close at crank angle {angle:.6g} deg" if is_open else None)
     pose = draw_poses(ax, {"": solution}, [angle], [1.0])
     ax.set_axis_off()
     if dimensions:

@@ -18,6 +18,7 @@ UNITS = ["--units", "force=kN, length=mm,torque=kN m,power=kW,angular speed=rpm"
         ("force=mm", '"mm" does not measure the same as "N"'),
         ("kN", 'must be "force=kN,length=mm"'),
         ("force", 'must be "force=kN,length=mm"'),
+        ("force=kN, force=N", "must name each dimension once"),
     ],
 )
 def test_a_wrong_unit_ends_the_command_with_one_sentence(text, message, capsys):

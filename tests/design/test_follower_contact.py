@@ -108,6 +108,14 @@ def test_a_weak_spring_lifts_off_and_the_face_then_has_no_pressure():
     axes.figure.clear()
 
 
+def test_a_face_that_is_pulled_off_at_rest_has_no_speed_of_lift_off():
+    law, pulled = ks.laws.cosine(ECCENTRICITY, RADIUS), ks.Spring(STIFFNESS, 10.0 * RADIUS, on="follower")
+    cam = ks.Mechanism("cam", ks.Crank(None), (ks.FlatFollower(law, follower=ks.Link(MASS)),))
+    found = ks.design.contact(ks.solve(cam, ANGLES, crank_speed=SPEED, loads=pulled), None, 0.015, *STEEL)
+    assert found.lifted == ((0.0, 2.0 * np.pi),)
+    assert found.lift_off_speed == 0.0
+
+
 @every("name", list(KINDS))
 def test_contact_is_that_of_the_scene_with_the_body_in_it(name):
     """Of every kind of follower, with loads on each part, both ways round; named if there are several."""

@@ -134,6 +134,7 @@ def test_the_default_angle_is_one_that_can_be_assembled(axes):
         (3.0, "machine must be a Mechanism or a Scene"),
         ({}, "there is nothing to draw"),
         (ks.crank_slider(np.array([[0.1], [0.2]]), 0.5), "plots show one design"),
+        (ks.crank_slider(0.1, 0.5, guide_offset=1.0), "crank-slider does not close at crank angle 40 deg"),
     ],
 )
 def test_what_is_no_machine_of_one_design_is_refused(machine, message):

@@ -264,6 +264,20 @@ def test_a_peak_near_a_dead_centre_gives_no_hint(angle):
         ks.solve(machine, 1.0, crank_speed=10.0, loads=ks.ProcessForce(table))
 
 
+def test_the_follower_of_a_cam_gives_no_hint():
+    follower = ks.RollerFollower(ks.laws.cosine(0.01, 0.05), ks.Guide.at(np.pi / 2), ks.Link(2.0))
+    pulse = ks.ProcessForce(ks.Table([0.0, 1.4, 1.5, 1.6, 4.0], [0.0, 0.0, 500.0, 0.0, 0.0]), on="follower")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ks.solve(ks.Mechanism("cam", ks.Crank(None), (follower,)), 1.0, crank_speed=10.0, loads=pulse)
+
+
+def test_a_hint_has_round_dead_centres():
+    table = ks.Table(AFTER_TDC + np.pi / 2, GAS)
+    with pytest.warns(ks.HintWarning, match="TDC at 180 deg and BDC at 0 deg"):
+        ks.solve(ks.crank_slider(0.05, 0.2, guide_angle=np.pi), 1.0, crank_speed=10.0, loads=ks.ProcessForce(table))
+
+
 def test_in_a_batch_one_design_suffices_for_a_hint():
     machine = MACHINES["upright"]
     batch = ks.Scene(machine, 1.0, loads=ks.ProcessForce(ks.Table(AFTER_TDC, GAS)))
