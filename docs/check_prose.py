@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-CHECKED = ("README.md", "docs/**/*.md", "notebooks/*.ipynb", "kinetostatics")
+CHECKED = ("README.md", "CHANGELOG.md", "docs/**/*.md", "notebooks/*.ipynb", "kinetostatics")
 """Trees that have to be clean."""
 MADE = {"_build", "generated"}
 DOCS_COPY = ROOT / "docs" / "notebooks"

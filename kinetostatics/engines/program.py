@@ -272,7 +272,7 @@ def plausibility_test(kind, judged=()):
         extent, reaches, bars, bodies, turning, arms = plausibility.compared_sizes(scene.mechanism)
     except (TypeError, AttributeError):
         return None
-    odd = []
+    odd, slender = [], 12.0 * plausibility.SMALL_INERTIA_FACTOR
     for leaf, usual in judged:
         if bars or not usual.in_links:
             most, least = (f"{limit!r}{' * longest' * usual.in_links}" for limit in (usual.most, usual.least))
@@ -290,7 +290,10 @@ def plausibility_test(kind, judged=()):
         odd += [
             f"abs({noted(scene.crank_speed)}) * {noted(scene.mechanism.crank.length)} > {plausibility.MAX_PIN_SPEED}"
         ]
-    odd += [f"0.0 < {noted(inertia)} < thin * {noted(mass)}" for inertia, mass in bodies]
+    odd += [
+        f"0.0 < {noted(inertia)} < max(thin, {4.0 / slender} * {noted(centre)} ** 2) * {noted(mass)}"
+        for inertia, mass, centre in bodies
+    ]
     odd += ["True" for _ in plausibility.loads_beside_rods(scene.mechanism, scene.loads)]
     tables = any(plausibility.doubtful_table(load) is not None for load in kind.numbered.loads)
     odd += ["True"] * (tables or plausibility.needs_look(scene.loads))
@@ -299,7 +302,7 @@ def plausibility_test(kind, judged=()):
     v = sizes(0.0, 0.0, 1.0, numbers, ())
     extent, longest = {noted(extent)}, max({", ".join([*map(noted, bars), "0.0", "0.0"])})
     shortest = min({", ".join([*map(noted, reaches), "inf", "inf"])})
-    thin = longest * longest / {12.0 * plausibility.SMALL_INERTIA_FACTOR}
+    thin = longest * longest / {slender}
     return extent / shortest, {" or ".join(odd) or "False"}"""
     if any(node.operation == "table" for node in needed(outputs)):
         return None

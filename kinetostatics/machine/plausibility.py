@@ -214,14 +214,18 @@ def compared_sizes(mechanism):
     In order:
 
     - all lengths together; the lengths whose shortest one counts; the bars
-    - pairs of inertia and mass; triples of inertia, mass and bar length
+    - triples of inertia, mass and distance of the mass centre along the link; triples of inertia, mass and bar length
     - pairs of a bar's length and its distance from the arm of its inner joint
 
     There are no hints if no bar is as long as its arm, the longest length is not huge, and no inertia is small or large
     relative to its bar.
     """
     reaches = [reach for part in mechanism.parts for reach in part.reaches]
-    bodies = [(link.inertia, link.mass) for link in mechanism.links.values() if present(link.inertia) is not None]
+    bodies = [
+        (link.inertia, link.mass, link.centre[0])
+        for link in mechanism.links.values()
+        if present(link.inertia) is not None
+    ]
     turning = [
         (link.inertia, link.mass, bar.length)
         for bar in mechanism.bars
