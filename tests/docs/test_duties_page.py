@@ -44,7 +44,7 @@ def test_numbers_of_the_page_are_those_of_its_machines():
         f"idling {mains['both duties, idle']:.0f} J, "
         f"{100 * (1 - mains['both duties, idle'] / mains['torque-free idling, idle']):.1f} % less",
         f"idles at {names['runs']['both duties, idle'].mean_speed * 30 / np.pi:.1f} rpm",
-        f"{start['both duties'] / 1e3:.0f} kN m to start in place of {start['torque-free idling'] / 1e3:.1f} kN m",
+        f"{start['both duties'] / 1e3:.0f} kN m to start instead of {start['torque-free idling'] / 1e3:.1f} kN m",
         f"brings {100 * (plain - free) / (plain - best):.1f} % of the saving",
     ):
         assert told in words, told

@@ -28,7 +28,11 @@ def _overlap(box, other):
 
 
 def _out_of_sight(ax, renderer):
-    """Numbers of ticks beyond the ends of their axis, which are not drawn."""
+    """Texts that are not drawn: numbers of ticks beyond the ends of their axis, and all of an axis that is off."""
+    if not ax.axison:
+        for axis in (ax.xaxis, ax.yaxis):
+            yield from (axis.label, *axis.get_ticklabels(which="both"))
+        return
     for axis, start, end in (("x", ax.bbox.x0, ax.bbox.x1), ("y", ax.bbox.y0, ax.bbox.y1)):
         for text in getattr(ax, f"{axis}axis").get_ticklabels(which="both"):
             box = text.get_window_extent(renderer)

@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 NAME = re.compile(r"(?<![\w.])[A-Za-z][\w.]*'*")
-FOUND_TOGETHER = "found together"
+FOUND_TOGETHER = "solved together"
 
 
 class Sized:

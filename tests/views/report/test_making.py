@@ -37,7 +37,7 @@ def test_unwritable_report_is_refused_first(name, message, tmp_path, monkeypatch
 
 @every("options, message", [
     ({"title": " "}, "title must be a text"), ({"title": 3}, "title must be a text"), ({"pdf": "x.html"}, "the ending"),
-    ({"variant": "a"}, "variant chooses"),
+    ({"variant": "a"}, "variant is for case files"),
 ])  # fmt: skip
 def test_options_that_make_no_sense_are_refused(options, message, tmp_path):
     with pytest.raises(ks.KinetostaticsError, match=message):
@@ -63,7 +63,7 @@ def test_the_case_file_is_not_replaced(tmp_path):
 def test_pdf_without_a_browser_is_refused_first(tmp_path, monkeypatch):
     monkeypatch.setattr(html, "BROWSERS", ("no-such-browser",))
     monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
-    with pytest.raises(ks.KinetostaticsError, match="none of no-such-browser is found"):
+    with pytest.raises(ks.KinetostaticsError, match="none of no-such-browser is installed"):
         ks.report(plain(), tmp_path / "x.html", pdf=tmp_path / "x.pdf")
 
 
