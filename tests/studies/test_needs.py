@@ -252,7 +252,7 @@ def test_tolerance_that_is_not_positive_is_refused(saw, within):
 
 def test_batch_is_refused_with_its_shape():
     batch = solved(ks.crank_slider(np.array([[0.2], [0.3]]), 1.3, slider=ks.Link(5.0)))
-    with pytest.raises(ks.ParameterError, match=r"one design.*\(2, 72\)"):
+    with pytest.raises(ks.ParameterError, match=r"single design.*\(2, 72\)"):
         ks.needs(batch, "O")
 
 

@@ -61,7 +61,7 @@ def test_study_has_a_row_a_method_and_setting(torque):
     assert np.all(np.isfinite(torque.loc[given, [TIME, "error"]]))
     assert torque.loc[~given, [TIME, "error"]].isna().all(axis=None)
     assert list(torque.loc[~given, "value"]) == [64, 128]
-    assert torque.loc[~given, "not given"].str.contains("more than the 48 crank angles").all()
+    assert torque.loc[~given, "not given"].str.contains("more than the 48 given crank angles").all()
 
 
 def test_ours_lie_within_5e_15_and_are_marked_as_ours(torque):

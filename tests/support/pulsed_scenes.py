@@ -126,7 +126,7 @@ class PulsedScene:
             return value
         x, y = self._rows(0.0, TURN, width, height)
         self.edges = np.append(self.edges, x)
-        return ks.Table(x, [*y[:-1], y[0]])
+        return ks.Table(x, [*y[:-1], y[0]], zero=0.0)
 
     def _travel_table(self, mechanism, height):
         low, high = ks.extremes(ks.Scene(mechanism, 1.0).solve(1), "slider_position").range
