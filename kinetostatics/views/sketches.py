@@ -37,7 +37,7 @@ MARGINS = 0.28, 0.2
 """Margins for dimensions beside and above the sketch, relative to its size."""
 NOTES_PER_LINE = 3
 ROUNDING = 1e-9
-"""Place of a mass centre beside the other one of its two up to which it is zero."""
+"""Largest coordinate of a mass centre, relative to the other one, that is shown as zero."""
 CLEAR_ENOUGH = 0.85
 """Share of the largest distance between joints and links at which the default crank angle is taken."""
 WIDTH, HEIGHTS = 6.4, (2.4, 5.6)
