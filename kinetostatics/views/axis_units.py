@@ -17,8 +17,8 @@ from ..numbers.formatting import heading, number, parse_heading
 from ..numbers.output_units import shown_in, shown_units
 from .canvas import panels
 
-UNITS_ENTRY = """    units : dict of dimension to unit, optional
-        Units of values and axes, {"force": "kN"}, as for `in_units`.
+UNITS_ENTRY = """units : dict of dimension to unit, optional
+    Units of values and axes, {"force": "kN"}, as for `in_units`.
 """
 UNITS_SENTENCE = '`units`, {"force": "kN"}, chooses the units of values and axes, as for `in_units`.'
 """What `with_units` adds to docstrings, those with a list of parameters and those without."""
@@ -68,10 +68,10 @@ def with_units(plot):
 
     option = inspect.Parameter("units", inspect.Parameter.KEYWORD_ONLY, default=None)
     vars(drawn)["__signature__"] = own.replace(parameters=[*own.parameters.values(), option])
-    head, rule, rest = (plot.__doc__ or "").partition("    Parameters\n    ----------\n")
+    head, rule, rest = (inspect.getdoc(plot) or "").partition("Parameters\n----------\n")
     listed, _, rest = rest.partition("\n\n")
     text = f"{head}{rule}{listed}\n{UNITS_ENTRY}\n{rest}"
-    drawn.__doc__ = text if rule else head.replace("    Examples\n", f"    {UNITS_SENTENCE}\n\n    Examples\n")
+    drawn.__doc__ = text if rule else head.replace("Examples\n", f"{UNITS_SENTENCE}\n\nExamples\n")
     return drawn
 
 
