@@ -147,7 +147,7 @@ def drive_means(solution):
     (torque, time), (error, _), pieces, values = means(by_angle, turn, [floor, 0.0])
     size = math.fsum(pieces.whole(np.abs(values[0, :, 1:-1]))) / turn.period
     if error > WARNING_ERROR * size + floor:
-        text = f"mean torque: it is right to about {error:.2g} N m of {torque:.6g} only, so uneven is the load"
+        text = f"mean torque: it is accurate only to {error:.2g} N m of {torque:.6g}: the load is uneven"
         warnings.warn(text, ConditionWarning, stacklevel=5)
     torque = 0.0 if abs(torque) <= ZERO_MEAN * size + floor else float(torque)
     energy = TURN * torque * (-1.0 if np.any(np.asarray(at.crank_sense) < 0.0) else 1.0)

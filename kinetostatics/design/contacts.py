@@ -163,8 +163,7 @@ ROLLER_RULES: dict[str, tuple[str, dict[str, Any]]] = {
     "roller_inertia": ("kg*m**2", {"low": 0.0}),
     "load_rating": ("N", POSITIVE),
 }
-ROLLER_DEFAULTS = (0.0, 10 / 3)
-"""Mass and life exponent by default."""
+ROLLER_DEFAULTS = {"roller_mass": 0.0, "life_exponent": 10 / 3}
 ROLLER_LIMITS = ("pin_load", "friction_coefficient", "life")
 """Limits of the roller on its pin, which are computed for a `CamRoller` only."""
 MATERIAL_RULES: dict[str, tuple[str, dict[str, Any]]] = {
@@ -182,10 +181,10 @@ def contact(
     poissons_ratio=None,
     *,
     follower=None,
-    roller_mass=0.0,
+    roller_mass=ROLLER_DEFAULTS["roller_mass"],
     roller_inertia=None,
     load_rating=None,
-    life_exponent=10 / 3,
+    life_exponent=ROLLER_DEFAULTS["life_exponent"],
     limits=None,
 ):
     """Contact of a roller or flat face with its cam over the turn, and exceeded limits.
@@ -292,7 +291,11 @@ def _follower_problems(led, roller_radius, own, limits):
     """Sentences about numbers and limits, by name, that the contact of a follower does not have."""
     if led.flat and roller_radius is not None:
         yield f"the {led.link} has a flat face, so it takes no roller_radius"
-    given = [name for name, value in own.items() if not (isinstance(value, float) and value in ROLLER_DEFAULTS)]
+    given = [
+        name
+        for name, value in own.items()
+        if not (isinstance(value, int | float) and value == ROLLER_DEFAULTS.get(name))
+    ]
     if names := [*given, *(name for name in limits if name in ROLLER_LIMITS)]:
         yield f"load and life of a roller are computed for a CamRoller only; the {led.link} takes no {', '.join(names)}"
 

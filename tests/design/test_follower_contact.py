@@ -183,6 +183,7 @@ TWO = (BARE, ks.RollerFollower(ks.laws.cosine(0.01, 0.05), pin="S", label="_2"))
         ),
         ((FLAT,), {}, "contact: width, youngs_modulus, poissons_ratio must be given, since the follower has no Face"),
         ((FLAT,), {"roller_radius": 0.01}, "contact: the follower has a flat face, so it takes no roller_radius"),
+        ((BARE,), {"load_rating": 1e4, "roller_mass": 10 / 3}, "takes no roller_mass, load_rating"),
         (
             (BARE,),
             {"load_rating": 1e4, "roller_mass": 1.0},
