@@ -8,11 +8,13 @@ from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..mechanics.quantities import magnitude
 from ..numbers import checks
+from .axis_units import with_units
 from .canvas import ACCENT, axes, display_unit, set_equal_scales, single_solution
 from .drawings import MASS_CENTRE, PIN, draw_fixed_parts, first_moving_joint, set_points, stroke_artist
 from .strokes import UNCLIPPED_SHARE
 
 
+@with_units
 def animation(solution, joints=None, frames=72, interval=50, ax=None):
     """Animation of the mechanism over the period of its motion and loads, with arrows for the joint reactions.
 

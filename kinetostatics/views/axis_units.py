@@ -75,11 +75,16 @@ def with_units(plot):
     return drawn
 
 
-def one_panel_each(plot, width, height, columns=1, pad=6.0):
-    """The plot, which of a mapping of label to machine draws a panel for each and returns a list of Axes.
+def one_panel_each(width, height, columns=1, pad=6.0):
+    """Decorate a plot of one machine: of a mapping of label to machine it draws a panel for each, a list of Axes.
 
     Width and height of a panel in inches; `pad` is the distance of its title, typographic points.
     """
+    return lambda plot: _with_panels(plot, width, height, columns, pad)
+
+
+def _with_panels(plot, width, height, columns, pad):
+    """The plot, which draws a panel for each machine of a mapping."""
     own = inspect.signature(plot)
     first = next(iter(own.parameters))
 

@@ -8,6 +8,7 @@ from matplotlib.patches import Circle
 
 from ..numbers import checks
 from ..numbers.output_units import shown_units
+from .axis_units import one_panel_each, with_units
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
 from .labels import label
 
@@ -19,6 +20,8 @@ LIMIT_RULE = {"largest": checks.Optional(checks.Number("rad", low=0.0, strict=Tr
 LIMIT_STYLE = {"color": ACCENT, "lw": 1.0, "ls": "--"}
 
 
+@with_units
+@one_panel_each(5.2, 4.6, 3)
 def cam_profile(cam, roller_radius=None, side="disk", angles=(0, 120, 240), cutter_radius=None, ax=None):
     """A cam: pitch curve, working curve, the roller or face at some crank angles, and the path of a cutter.
 
@@ -77,6 +80,7 @@ def cam_profile(cam, roller_radius=None, side="disk", angles=(0, 120, 240), cutt
     return ax
 
 
+@with_units
 def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     """Curvature of pitch curves over the crank angle, and the limit for a roller.
 
@@ -108,6 +112,7 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     return _label_axes(ax, "curvature of the pitch curve [1/m]", len(named) > 1 or radius is not None)
 
 
+@with_units
 def cam_pressure_angle(cams, largest=None, ax=None):
     """Pressure angle of cams over the crank angle, without a mechanism.
 
@@ -135,6 +140,7 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     return _label_axes(ax, "pressure angle [deg]", len(named) > 1)
 
 
+@with_units
 def contact_pressure(contacts, ax=None):
     """Hertz pressure of a roller or flat face on its cam over the crank angle.
 
@@ -177,6 +183,7 @@ def contact_pressure(contacts, ax=None):
     return _label_axes(ax, "Hertz pressure [MPa]", len(ax.get_legend_handles_labels()[1]) > 1)
 
 
+@with_units
 def law_motion(laws, ax=None):
     """Position, velocity, acceleration and jerk of laws over the turn, per radian of crank angle, in four axes.
 

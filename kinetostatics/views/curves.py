@@ -8,6 +8,7 @@ from ..design.linkage import four_bar_of
 from ..mechanics import quantities
 from ..mechanics.quantities import magnitude, values
 from ..numbers.checks import choice, require
+from .axis_units import with_units
 from .canvas import (
     FROM_X,
     FROM_Y_CLOCKWISE,
@@ -25,6 +26,7 @@ from .canvas import (
 )
 
 
+@with_units
 def chain_unit_motion(solutions, link, order=1, ax=None):
     """Relative angular velocity or acceleration of a link of the chain unit (Belarusian study, figures 5-12).
 
@@ -69,6 +71,7 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
     return finish_axes(ax, f"relative angular {kind} of the {link} [1]", len(named) > 1, counted=FROM_Y_CLOCKWISE)
 
 
+@with_units
 def shaking_force(solutions, by="direction", ax=None):
     """Polar hodograph of the shaking force, by its own direction or by crank angle (mower study, figures 6a, 6b).
 
@@ -116,6 +119,7 @@ def require_turning(named):
     require("plots", f"the crank speed of {', '.join(still)} is 0, but the figure is relative to it" if still else None)
 
 
+@with_units
 def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     """One quantity over the crank angle; curves that coincide are drawn once, with all their labels.
 
@@ -148,6 +152,7 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
     return draw_over_turn(ax, named, curves, f"{declared.label} [{shown}]", shown, counted)
 
 
+@with_units
 def torque(solutions, ax=None, counted=FROM_X):
     """Balancing torque over the crank angle (study of sawframe 2R63, figure 6a).
 
@@ -165,6 +170,7 @@ def torque(solutions, ax=None, counted=FROM_X):
     return over_turn(solutions, "balancing_torque", ax, counted)
 
 
+@with_units
 def cam_force(solutions, ax=None):
     """Force of the cam on the roller over the crank angle (figure 6b).
 
@@ -180,6 +186,7 @@ def cam_force(solutions, ax=None):
     return over_turn(solutions, "cam_force", ax)
 
 
+@with_units
 def pressure_angle(solutions, ax=None):
     """Pressure angle of the cam pair over the crank angle (figure 5).
 
@@ -195,6 +202,7 @@ def pressure_angle(solutions, ax=None):
     return over_turn(solutions, "pressure_angle", ax)
 
 
+@with_units
 def acceleration_error(solutions, ax=None, slider=None):
     """Slider acceleration against a cosine law of the same stroke, relative to its amplitude (figure 3).
 

@@ -9,6 +9,7 @@ from matplotlib.path import Path
 
 from ..machine.group import FRAME
 from ..numbers import checks
+from .axis_units import with_units
 from .cams import ANGLES_RULE
 from .canvas import (
     ACCENT,
@@ -71,6 +72,7 @@ GROUND_DEPTH = 3.0
 """Depth of the ground below a fixed pivot, in half lengths of a block."""
 
 
+@with_units
 def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
     """The mechanism at given crank angles: links, fixed pivots, guides, cams, mass centres and loads.
 

@@ -7,6 +7,7 @@ import numpy as np
 from ..drive.running import Running
 from ..numbers import checks
 from ..numbers.checks import require
+from .axis_units import one_panel_each, with_units
 from .canvas import (
     FROM_X,
     INK,
@@ -20,6 +21,7 @@ from .canvas import (
 )
 
 
+@with_units
 def crank_speed(runs, ax=None):
     """Crank speed of machines in periodic running over the crank angle, its mean dotted.
 
@@ -50,6 +52,8 @@ def crank_speed(runs, ax=None):
     return _finish(ax, runs.values())
 
 
+@with_units
+@one_panel_each(6.4, 3.6)
 def drive_torques(run, ax=None):
     """Torques at the crank over the crank angle: motor, machine with inertia, loads only.
 
@@ -84,6 +88,7 @@ def drive_torques(run, ax=None):
     return ax
 
 
+@with_units
 def energy_flow(runs, ax=None):
     """Energy per turn of machines in periodic running, a bar for each part that supplies or absorbs energy.
 
@@ -155,6 +160,8 @@ def _finish(ax, runs):
     return ax
 
 
+@with_units
+@one_panel_each(6.4, 3.2)
 def lost_power(solution, ax=None):
     """Power lost over the crank angle, stacked by joint, damper and drag, its mean over the turn dashed.
 
@@ -187,6 +194,7 @@ def lost_power(solution, ax=None):
     return _with_stack_legend(ax)
 
 
+@with_units
 def losses(solutions, ax=None):
     """Mean power lost over the turn, a bar for each solution, stacked by joint, damper and drag, with the sum on top.
 

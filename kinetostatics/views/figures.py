@@ -23,7 +23,7 @@ from ..numbers.files import write_problem
 from ..numbers.formatting import parse_heading
 from ..numbers.paths import places_by_path
 from . import curves, drawings, drives
-from .axis_units import scale_axes
+from .axis_units import scale_axes, with_units
 from .cams import draw_each_over_turn
 from .canvas import (
     ACCENT,
@@ -286,6 +286,7 @@ FIGURES = {
 """By name: the function that draws a figure, and the condition for it in `figures_of`."""
 
 
+@with_units
 def front(found, ax=None):
     """Pareto front of two outputs by `ks.design.pareto`, and the design before.
 
@@ -335,6 +336,7 @@ def draw_designs(case, found, folder, file_format="png"):
     return _draw_pages(case, pages, folder, file_format)
 
 
+@with_units
 def before_and_after(found):
     """Before and after a search: cam, torque, support reaction.
 

@@ -11,6 +11,7 @@ from ..mechanics.free_body import DRIVE, INERTIA, LOAD, REACTION, WEIGHT
 from ..mechanics.free_body import free_body as actions_on
 from ..numbers import checks
 from ..numbers.formatting import number
+from .axis_units import one_panel_each, with_units
 from .canvas import ACCENT, INK, STEEL, axes, display_unit, set_equal_scales, single_solution
 from .drawings import MASS_CENTRE, PIN, set_points, stroke_artist
 from .labels import label
@@ -23,6 +24,8 @@ COLOURS = {REACTION: STEEL, INERTIA: ACCENT, WEIGHT: "tab:brown", LOAD: "tab:gre
 """Colours of arrows by kind of action."""
 
 
+@with_units
+@one_panel_each(7.0, 4.2, pad=22.0)
 def shares(solution, quantity, ax=None):
     """Shares of all sources in a force or moment at its peak, a bar for each, with the peak of each single source.
 
@@ -98,6 +101,8 @@ LABEL_MARGIN = 0.28
 """Margin left and right of the arrows for their values, relative to the width of the drawing."""
 
 
+@with_units
+@one_panel_each(5.2, 4.8, 2)
 def free_body(solution, link, angle, ax=None):
     """Free body of a link: all forces on it as arrows to one scale, couples as arcs, with their values.
 

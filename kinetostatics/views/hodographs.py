@@ -11,6 +11,7 @@ from ..mechanics.quantities import of_scene
 from ..numbers.checks import choice, require, single_numbers
 from ..numbers.planar import rotate_back
 from . import canvas
+from .axis_units import with_units
 from .canvas import (
     FROM_X,
     INK,
@@ -33,6 +34,7 @@ PANEL_SIZE = 4.4, 4.0
 MAX_COLUMNS = 3
 
 
+@with_units
 def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
     """Hodograph of a force: the curve of its tip over the turn (figure 7).
 
@@ -91,6 +93,7 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
     return ax
 
 
+@with_units
 def rocking_moment(solutions, ax=None, marks=30, counted=FROM_X):
     """Hodograph of the rocking moment: the curve of its vector (about x, about y) over the turn.
 
@@ -118,6 +121,7 @@ def rocking_moment(solutions, ax=None, marks=30, counted=FROM_X):
     return ax
 
 
+@with_units
 def hodographs(solutions, marks=90, counted=FROM_X):
     """Hodographs of the forces on the frame, a panel for each place of contact (`Solution.ground`).
 

@@ -8,6 +8,7 @@ from ..mechanics.principal_points import principal_points as points_of
 from ..numbers import checks
 from ..solution.scene import solve
 from . import drawings
+from .axis_units import one_panel_each, with_units
 from .canvas import (
     ACCENT,
     INK,
@@ -30,6 +31,7 @@ SAME_POINT = 1e-6
 """Distance of principal points, relative to the reach of the links, up to which they share a label."""
 
 
+@with_units
 def mass_centres(solutions, angle=60, ax=None):
     """Paths of the common mass centre, at the scale of the mechanism (mower study, figures 5a, 5b).
 
@@ -73,6 +75,8 @@ def mass_centres(solutions, angle=60, ax=None):
     return ax
 
 
+@with_units
+@one_panel_each(5.2, 4.6, 2)
 def principal_points(mechanism, angle=60, before=None, ax=None):
     """Principal points H1, H2 ... on the links, the contour of their vectors from O, and the common mass centre S.
 

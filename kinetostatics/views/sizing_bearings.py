@@ -5,6 +5,7 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..sizing.bearings import Bearing
+from .axis_units import with_units
 from .canvas import ACCENT, FROM_X, INK, STEEL, close_curve, display_unit, finish_axes, panels
 from .hodographs import write_angles
 
@@ -12,6 +13,7 @@ ANGLES, MARKS = 1440, 8
 """Crank angles over the period, and those written at hodographs."""
 
 
+@with_units
 def bearing(found):
     r"""Hodographs of the load on each ring of a bearing in the ring's axes, and its size with the equivalent load.
 

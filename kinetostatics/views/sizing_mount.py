@@ -5,9 +5,11 @@ import numpy as np
 from ..errors import ParameterError
 from ..machine.loads import TURN
 from ..sizing.foundation import WAYS, Mount
+from .axis_units import with_units
 from .canvas import ACCENT, INK, STEEL, display_unit, finish_axes, panels
 
 
+@with_units
 def mount(result):
     """Velocity of a block's centre over the turn, and loads by harmonic, a row for each direction that moves.
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..errors import ParameterError
 from ..sizing.play import ContactLoss
+from .axis_units import with_units
 from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, display_unit
 
 LARGEST_SHOWN = 1.3
@@ -14,6 +15,7 @@ NAMED = 0.33
 """Energy of an impact, relative to the largest, above which it is written."""
 
 
+@with_units
 def contact_loss(result, ax=None):
     """Force without play and normal force with it over the crank angle; the index on a second axis.
 

@@ -7,12 +7,14 @@ import numpy as np
 
 from ..numbers import checks
 from ..solution.sections import Sections
+from .axis_units import with_units
 from .canvas import ACCENT, FROM_X, INK, STEEL, display_unit
 
 ANGLES = 720
 """Crank angles over the period of envelopes and stresses."""
 
 
+@with_units
 def sections(found, ax=None):
     """Axial force, shear force and bending moment along a bar, and its largest and smallest stress over the turn.
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from ..numbers import checks
 from ..sizing.springs import HelicalSpring
+from .axis_units import with_units
 from .canvas import ACCENT, INK, LOAD, STEEL
 
 SMALL: dict[str, Any] = {"fontsize": "small"}
@@ -15,6 +16,7 @@ LABELS = ("d {:.4g}", "D {:.4g}", "{:.4g} free", "{:.4g} solid")
 DIMENSION = {"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0, "color": INK, "lw": 0.8}
 
 
+@with_units
 def helical_spring(spring, ax=None):
     """Haigh diagram of a helical spring with its limits and its working point, beside a drawing with dimensions.
 

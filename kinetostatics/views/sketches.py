@@ -14,6 +14,7 @@ from ..numbers.output_units import dimension_name, shown_units
 from ..numbers.paths import places_by_path
 from ..solution.parameters import is_zero
 from ..solution.scene import Scene
+from .axis_units import one_panel_each, with_units
 from .canvas import NOTE_STYLE, STEEL, axes, single_solution
 from .drawings import draw_poses
 from .labels import label
@@ -44,6 +45,8 @@ WIDTH, HEIGHTS = 6.4, (2.4, 5.6)
 """Width of a new figure and limits of its height, inches."""
 
 
+@with_units
+@one_panel_each(6.4, 3.6)
 def sketch(machine, dimensions=True, angle=None, ax=None):
     """Kinematic sketch of a machine at one crank angle: links, joints, guides, cam, loads, and its dimensions.
 

@@ -108,8 +108,14 @@ def test_speed_and_torque_figures_are_drawn():
     assert drive[:-1] == pytest.approx(MOTOR.transmission * run.motor_torque)
 
 
-@pytest.mark.parametrize("given", [None, 3, {}, {"saw": None}, {"saw": ks.Scene(ks.crank_slider(0.1, 0.4), 10.0)}])
+@pytest.mark.parametrize("given", [None, 3, {"saw": None}, {"saw": ks.Scene(ks.crank_slider(0.1, 0.4), 10.0)}])
 def test_what_is_no_running_is_refused_in_words(given):
     for figure in (drives.crank_speed, drives.energy_flow, drives.drive_torques):
         with pytest.raises(ks.ParameterError, match=r"runs must be a Running or a dict of label to Running, as \{"):
             figure(given)
+
+
+def test_no_running_at_all_is_refused_in_words():
+    for figure, words in ((drives.crank_speed, "runs must be"), (drives.drive_torques, "there is nothing to draw")):
+        with pytest.raises(ks.ParameterError, match=words):
+            figure({})
