@@ -3,7 +3,6 @@
 The table comes row by row, so that a server can answer a drag between two rows.
 """
 
-import warnings
 from collections.abc import Iterator
 from operator import attrgetter
 from typing import NamedTuple
@@ -15,7 +14,8 @@ from ...cycle.extremes import ExtremesRow, extrema, extremes_row, warning
 from ...cycle.means import mean_absolute_torque
 from ...cycle.rounding import MAX_LISTED, BoundedExtremes
 from ...design.constraints import parse_output
-from ...design.problem import Problem, turns_of
+from ...design.optimisation import ANGLES
+from ...design.problem import Problem
 from ...errors import DesignError, KinetostaticsError
 from ...mechanics.quantities import of_scene
 from ...numbers.formatting import angle, digits_of, number, pretty_unit
@@ -26,8 +26,8 @@ from ...solution.parameters import paths_without_derivative
 from ..canvas import display_unit
 from .fields import shown_unit
 
-ANGLES_PER_TURN = 360
-"""Crank angles of a turn on which an output with derivatives is computed; its peaks lie between them."""
+COUNT = 360
+"""Crank angles of a solution for extremes and means, which do not depend on them, and of a band by default."""
 SHARE_DIGITS = 3
 """Digits of a sensitivity."""
 INFINITY = "∞"
@@ -106,10 +106,8 @@ def figure_rows(solution, reference=None) -> Iterator[FigureRow]:
         yield FigureRow(label, unit, value, other, ratio(other, value), problem)
     if reference is None:
         return
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        found = Comparison(reference, solution)
-        plain, matched = found.torque_extremes
+    found = Comparison(reference, solution)
+    plain, matched = found.torque_extremes
     if plain.value.size <= MAX_LISTED:
         rows = zip(plain.value, matched, found.torque_extremum_ratios, strict=True)
         for number, (other, value, share) in enumerate(rows, 1):
@@ -119,9 +117,7 @@ def figure_rows(solution, reference=None) -> Iterator[FigureRow]:
 def _mean(mean, solution):
     """Mean of a solution, or NaN and the reason."""
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # extremes of the torque carry these warnings
-            return float(mean(solution)), ""
+        return float(mean(solution)), ""
     except KinetostaticsError as error:
         return np.nan, str(error)
 
@@ -184,11 +180,10 @@ def sensitivities(scene, text) -> Sensitivities:
     fixed = paths_without_derivative(scene.places, scene.mechanism)
     own = {path: value for path, value in scene.parameters.items() if isinstance(value, float) and path not in fixed}
     bounds = {path: (value - abs(value) - 1.0, value + abs(value) + 1.0) for path, value in own.items()}
-    angles = ANGLES_PER_TURN * turns_of(scene)
-    problem = Problem(scene, bounds, (output.quantity,), angles=angles)
+    problem = Problem(scene, bounds, (output.quantity,), angles=ANGLES)
     value, slopes = problem.output(output, problem.start)
     if not np.isfinite(value):
-        scene.solve(angles)
+        scene.solve(ANGLES)
         raise DesignError(f"{output} has no finite value")
     rows = [
         Sensitivity(path, float(slope), float(slope * own[path] / value) if own[path] and value else np.nan)
@@ -247,7 +242,7 @@ def standard_uncertainties(spreads, scene):
 
 def ask(session, request):
     """Rows of the table of a state, one a step: extremes of the quantities to show, then figures of the period."""
-    solution = session.scene(request["state"]).solve(ANGLES_PER_TURN)
+    solution = session.scene(request["state"]).solve(COUNT)
     reference = None if request.get("reference") is None else session.reference(request["reference"])
     names = [name for name in request.get("show", ()) if name in of_scene(solution)]
     for row in quantity_rows(solution, names, reference):
@@ -299,7 +294,7 @@ def ask_tolerances(session, request):
     spreads = session.case.tolerances if session.case else {}
     given = standard_uncertainties(spreads, scene) if given is None else given
     yield {"spreads": given}
-    solution = scene.solve(request.get("count", ANGLES_PER_TURN))
+    solution = scene.solve(request.get("count", COUNT))
     names = [name for name in request.get("show", ()) if name in of_scene(solution)]
     for band in bands(solution, names, given) if given else ():
         yield {"band": band._asdict()}

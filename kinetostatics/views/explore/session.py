@@ -75,7 +75,7 @@ class Session:
     def _parts(self, request, parts):
         """Answers in parts, all but the last with `more`; None where the next part is not ready."""
         try:
-            for part in parts:
+            for part in _unwarned(parts):
                 yield part and self._marked(request, {"more": True} | part)
             yield self._marked(request, {"more": False})
         except KinetostaticsError as error:
@@ -106,8 +106,20 @@ class Session:
         """Solution of the state of the reference, kept with its extremes until another one is asked for."""
         scene = self.scene(state)
         if self._reference[0] is not scene:
-            self._reference = scene, scene.solve(answers.ANGLES_PER_TURN)
+            self._reference = scene, scene.solve(answers.COUNT)
         return self._reference[1]
+
+
+def _unwarned(parts):
+    """Parts without warnings: `look` has them, or the parts themselves."""
+    end = object()
+    while True:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            part = next(parts, end)
+        if part is end:
+            return
+        yield part
 
 
 def open_page(session, request):
