@@ -7,6 +7,7 @@ request is a dict with `id` and `kind`; its answer carries the same `id` and the
 import warnings
 from collections import OrderedDict
 from types import GeneratorType
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
 from ..report.movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import fields
+from . import answers, fields, searching
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -52,6 +53,8 @@ class Session:
             checks.require("explore", checks.choice("variant", variant, tuple(self.bases)))
         self.first = variant if variant is not None else next(iter(self.bases))
         self.folder = folder
+        self.search: Any = None
+        self._reference: tuple[Any, Any] = None, None
         self._scenes: OrderedDict[str, Scene] = OrderedDict()
 
     def answer(self, request):
@@ -72,7 +75,7 @@ class Session:
     def _parts(self, request, parts):
         """Answers in parts, all but the last with `more`; None where the next part is not ready."""
         try:
-            for part in parts:
+            for part in _unwarned(parts):
                 yield part and self._marked(request, {"more": True} | part)
             yield self._marked(request, {"more": False})
         except KinetostaticsError as error:
@@ -98,6 +101,25 @@ class Session:
                 self._scenes.popitem(last=False)
         self._scenes.move_to_end(key)
         return self._scenes[key]
+
+    def reference(self, state):
+        """Solution of the state of the reference, kept with its extremes until another one is asked for."""
+        scene = self.scene(state)
+        if self._reference[0] is not scene:
+            self._reference = scene, scene.solve(answers.COUNT)
+        return self._reference[1]
+
+
+def _unwarned(parts):
+    """Parts without warnings: `look` has them, or the parts themselves."""
+    end = object()
+    while True:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            part = next(parts, end)
+        if part is end:
+            return
+        yield part
 
 
 def open_page(session, request):
@@ -154,7 +176,16 @@ def curve(solution, name):
     }
 
 
-ANSWERS = {"open": open_page, "describe": describe, "look": look}
+ANSWERS = {
+    "open": open_page,
+    "describe": describe,
+    "look": look,
+    "ask": answers.ask,
+    "sensitivities": answers.ask_sensitivities,
+    "tolerances": answers.ask_tolerances,
+    "optimise": searching.answers,
+    "cancel": searching.cancel,
+}
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
-OF_NEWEST: tuple[str, ...] = ()
+OF_NEWEST: tuple[str, ...] = ("ask", "sensitivities", "tolerances")
 """Kinds of requests whose answers are dropped when a newer state is asked for."""
