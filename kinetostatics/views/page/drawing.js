@@ -1,185 +1,254 @@
-"use strict";
-// A machine drawn at one crank angle: what was packed by `movement.py`, in pixels of its panel.
-const SVG = "http://www.w3.org/2000/svg";
-const PAD = 26, TALLEST = 560, TALLEST_BESIDE_WIDE = 300, HEAD = 9, TURN_RADIUS = 26, WIDEST_TURN = 290;
+// One machine in one <svg>, at a chosen crank angle. Its data are those of `movement.py`, with typed arrays:
+//   strokes [{kind, filled, points, poses?, shapes?}], joints {name: places}, moving and named joints, masses [places],
+//   arrows {reaction: joint}, forces {reaction: vectors}, torque, centre (joint at which the torque is drawn),
+//   and its frame: box [left, low, right, high], scale (m per N), longest arrow, largest_torque, force_unit.
+import { element, put, short } from "./svg.js";
 
-function unpacked(text, Kind) {
-  const bytes = Uint8Array.from(atob(text), (sign) => sign.charCodeAt(0));
-  return new Kind(bytes.buffer);
-}
+const PAD = 26, HEAD = 9, TURN_RADIUS = 26, WIDEST_TURN = 290, FOOT = 14;
+const TORQUE = " torque"; // its name among the hidden arrows: no reaction begins with a blank
 
-function element(name, parent, attributes = {}, text = "") {
-  const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  if (text) made.textContent = text;
-  parent.appendChild(made);
-  return made;
-}
-
-const short = (value) => value.toFixed(2);
-
-class Drawing {
-  constructor(svg, data, row, forces) {
-    Object.assign(this, { svg, data, row, forces, machine: data.drawings[row], count: data.counts[row] });
-    const machine = this.machine;
-    this.joints = Object.fromEntries(Object.entries(machine.joints).map(([name, text]) => [name, unpacked(text, Float32Array)]));
-    this.masses = machine.masses.map((text) => unpacked(text, Float32Array));
-    this.strokes = machine.strokes.map((stroke) => ({
-      ...stroke,
-      points: unpacked(stroke.points, Float32Array),
-      poses: stroke.poses && unpacked(stroke.poses, Float32Array),
-      shapes: stroke.shapes && unpacked(stroke.shapes, Float32Array),
-    }));
-    this.hidden = new Set();
-    this.longer = 1;
-    this.build();
+// Lines, pins and mass centres of a machine in a group.
+class Machine {
+  constructor(parent, name) {
+    this.group = element("g", parent, { class: name });
+    this.form = "";
   }
 
-  // Scale and frame follow the width of the panel, so that letters and lines keep their size.
+  // Elements stay while the structure is the same.
+  update(data, view) {
+    Object.assign(this, { data, view, count: data.torque.length });
+    const strokes = data.strokes.map(({ kind, filled }) => [kind, filled]);
+    const form = JSON.stringify([strokes, data.moving, data.named, data.masses.length]);
+    if (form !== this.form) this.build();
+    this.form = form;
+    data.strokes.forEach((stroke, number) => {
+      const path = this.paths[number];
+      if (!stroke.shapes) path.setAttribute("d", this.outline(stroke, stroke.points, 0, Boolean(stroke.poses)));
+      if (!stroke.poses) path.removeAttribute("transform");
+    });
+    this.fixed.forEach(({ pin, name }) => this.centre(pin, this.at(data.joints[name], 0)));
+  }
+
   build() {
-    const [left, low, right, high] = this.machine.box;
-    const tallest = this.svg.closest(".wide") ? TALLEST_BESIDE_WIDE : TALLEST;
-    const width = Math.max(240, Math.round(this.svg.clientWidth || 480));
-    const scale = Math.min((width - 2 * PAD) / (right - left || 1), (tallest - 2 * PAD) / (high - low || 1));
-    const height = Math.max(150, Math.round(scale * (high - low) + 2 * PAD + 14));
-    this.scale = scale;
-    this.originX = width / 2 - (scale * (left + right)) / 2;
-    this.originY = height / 2 - 7 + (scale * (low + high)) / 2;
-    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.svg.replaceChildren();
-    this.paths = this.strokes.map((stroke) => this.stroke(stroke));
-    this.pins = this.machine.moving.map(() => element("circle", this.svg, { class: "pin", r: 4 }));
-    for (const name of this.machine.named) {
-      if (!this.machine.moving.includes(name)) {
-        const [x, y] = this.at(this.joints[name], 0);
-        element("circle", this.svg, { class: "pin", r: 4, cx: x, cy: y });
-      }
+    const { data, group } = this;
+    group.replaceChildren();
+    this.paths = data.strokes.map(({ kind, filled }) => element("path", group, {
+      class: `${filled ? "" : "line "}${kind === "line" ? "line-load" : kind}`,
+    }));
+    const pin = (name) => ({ name, pin: element("circle", group, { class: "pin", r: 4 }) });
+    this.pins = data.moving.map(pin);
+    this.fixed = data.named.filter((name) => !data.moving.includes(name)).map(pin);
+    this.centres = data.masses.map(() => {
+      const mass = element("g", group, { class: "centre" });
+      element("circle", mass, { class: "mass", r: 5.5 });
+      element("path", mass, { class: "mass-dark", d: "M0 0V-5.5A5.5 5.5 0 0 1 5.5 0ZM0 0V5.5A5.5 5.5 0 0 1 -5.5 0Z" });
+      return mass;
+    });
+  }
+
+  at(places, row) { return this.view.pixel(places[2 * row], places[2 * row + 1]); }
+
+  centre(pin, [x, y]) { put(pin, { cx: short(x), cy: short(y) }); }
+
+  // A line through points from a place on; `own` in the stroke's own axes.
+  outline({ points, filled }, places, from, own) {
+    const { scale, originX, originY } = this.view, end = from + points.length;
+    let text = "", pen = "M";
+    for (let place = from; place < end; place += 2) {
+      const x = scale * places[place], y = -scale * places[place + 1];
+      if (Number.isNaN(x)) { pen = "M"; continue; }
+      text += own ? `${pen}${short(x)} ${short(y)}` : `${pen}${short(originX + x)} ${short(originY + y)}`;
+      pen = "L";
     }
-    this.centres = this.masses.map(() => this.mass());
-    this.turning = element("path", this.svg, { class: "turning" });
-    this.arrows = Object.fromEntries(Object.keys(this.machine.arrows).map((name) => [name, this.arrow(name)]));
-    this.names = this.machine.named.map(() => element("text", this.svg, { class: "name" }));
-    this.rule(width, height);
-    if (this.index !== undefined) this.show(this.index);
+    return filled && text ? `${text}Z` : text;
+  }
+
+  show(row) {
+    const { data, group } = this;
+    const open = data.moving.some((name) => Number.isNaN(data.joints[name][2 * row]));
+    group.setAttribute("visibility", open ? "hidden" : "visible");
+    if (open) return;
+    data.strokes.forEach((stroke, number) => {
+      const { points, poses, shapes } = stroke, path = this.paths[number];
+      if (poses) {
+        const [x, y] = this.view.pixel(poses[3 * row], poses[3 * row + 1]);
+        const angle = (-180 / Math.PI * poses[3 * row + 2]).toFixed(3);
+        path.setAttribute("transform", `translate(${short(x)} ${short(y)}) rotate(${angle})`);
+      } else if (shapes) {
+        path.setAttribute("d", this.outline(stroke, shapes, row * points.length, false));
+      }
+    });
+    this.pins.forEach(({ pin, name }) => this.centre(pin, this.at(data.joints[name], row)));
+    this.centres.forEach((mass, number) => {
+      mass.setAttribute("transform", `translate(${this.at(data.masses[number], row).map(short).join(" ")})`);
+    });
+  }
+}
+
+export class Drawing {
+  // `tallest` limits the height, in pixels; `height` sets it.
+  constructor(svg, { tallest = 560, height = 0 } = {}) {
+    Object.assign(this, { svg, tallest, height, hidden: new Set(), longer: 1, index: 0, onview: () => {} });
+    svg.classList.add("drawing");
+    this.root = element("g", svg);
+    this.other = new Machine(this.root, "reference");
+    this.machine = new Machine(this.root, "machine");
+    this.turning = element("path", this.root, { class: "turning" });
+    this.pointers = element("g", this.root);
+    this.names = element("g", this.root);
+    this.rule = element("path", this.root, { class: "rule" });
+    this.size = element("text", this.root, { class: "scale" });
+    this.arrows = {};
+    this.width = this.measured();
+    new ResizeObserver(() => {
+      if (this.measured() === this.width) return;
+      this.width = this.measured();
+      this.draw();
+    }).observe(svg);
+  }
+
+  measured() { return Math.max(240, Math.round(this.svg.clientWidth || 480)); }
+
+  // New numbers or another machine; the frame may be that of other data, so that it stays while a point is dragged.
+  update(data, frame = data) {
+    Object.assign(this, { data, frame });
+    this.draw();
+  }
+
+  // A second machine as thin lines below the first, or null.
+  reference(data) {
+    this.otherData = data;
+    this.draw();
+  }
+
+  // A ghost is pale and without forces: the last machine that could be assembled.
+  ghost(wanted) { this.root.classList.toggle("ghost", wanted); }
+
+  hide(name, wanted) {
+    this.hidden[wanted ? "add" : "delete"](name);
+    this.show(this.index);
+  }
+
+  lengthen(times) {
+    this.longer = times;
+    this.draw();
+  }
+
+  // Scale and place of the box; letters and lines keep their size.
+  fit() {
+    const [left, low, right, high] = this.frame.box, { width } = this;
+    const most = this.height || this.tallest, room = [width - 2 * PAD, most - 2 * PAD - FOOT];
+    const scale = Math.min(room[0] / (right - left || 1), room[1] / (high - low || 1));
+    const height = this.height || Math.max(150, Math.round(scale * (high - low) + 2 * PAD + FOOT));
+    const originX = width / 2 - scale * (left + right) / 2, originY = (height - FOOT) / 2 + scale * (low + high) / 2;
+    if (this.scale === scale && this.originX === originX && this.originY === originY && this.tall === height) return;
+    Object.assign(this, { scale, originX, originY, tall: height });
+    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    this.onview();
   }
 
   pixel(x, y) { return [this.originX + this.scale * x, this.originY - this.scale * y]; }
 
-  at(places, row) { return this.pixel(places[2 * row], places[2 * row + 1]); }
+  metres(x, y) { return [(x - this.originX) / this.scale, (this.originY - y) / this.scale]; }
 
-  stroke(stroke) {
-    const name = stroke.kind === "line" ? "line-load" : stroke.kind;
-    return element("path", this.svg, { class: `${stroke.filled ? "" : "line "}${name}`, d: stroke.poses ? this.outline(stroke, true) : this.outline(stroke) });
-  }
-
-  outline(stroke, own = false, from = 0) {
-    const points = stroke.shapes && !own ? stroke.shapes : stroke.points;
-    const count = stroke.points.length;
-    let text = "", pen = "M";
-    for (let place = from; place < from + count; place += 2) {
-      if (Number.isNaN(points[place])) { pen = "M"; continue; }
-      const [x, y] = own ? [this.scale * points[place], -this.scale * points[place + 1]] : this.pixel(points[place], points[place + 1]);
-      text += `${pen}${short(x)} ${short(y)}`;
-      pen = "L";
+  draw() {
+    if (!this.data) return;
+    this.fit();
+    this.machine.update(this.data, this);
+    this.other.group.classList.toggle("absent", !this.otherData);
+    if (this.otherData) this.other.update(this.otherData, this);
+    const names = Object.keys(this.data.arrows);
+    if (names.join("\n") !== Object.keys(this.arrows).join("\n")) {
+      this.pointers.replaceChildren();
+      this.arrows = Object.fromEntries(names.map((name) => [name, this.arrow(name)]));
     }
-    return stroke.filled && text ? `${text}Z` : text;
-  }
-
-  mass() {
-    const group = element("g", this.svg);
-    element("circle", group, { class: "mass", r: 5.5 });
-    element("path", group, { class: "mass-dark", d: "M0 0V-5.5A5.5 5.5 0 0 1 5.5 0ZM0 0V5.5A5.5 5.5 0 0 1 -5.5 0Z" });
-    return group;
+    this.measure();
+    this.show(this.index);
   }
 
   arrow(name) {
-    const group = element("g", this.svg, { "data-reaction": name });
-    return { group, path: element("path", group, { class: "arrow" }), text: element("text", group, { class: "force" }, name) };
+    const group = element("g", this.pointers, { "data-reaction": name });
+    const path = element("path", group, { class: "arrow" });
+    return { group, path, text: element("text", group, { class: "force" }, name) };
   }
 
   // A force of a round size as long as its arrow.
-  rule(width, height) {
-    const { forceUnit } = this.data, scale = this.longer * this.machine.scale;
-    if (!scale) return;
-    const most = 0.28 * width / (scale * this.scale) * forceUnit.factor;
-    const power = 10 ** Math.floor(Math.log10(most));
+  measure() {
+    const { factor, unit } = this.frame.force_unit, pixels = this.longer * this.frame.scale * this.scale;
+    const most = 0.28 * this.width / pixels * factor, power = 10 ** Math.floor(Math.log10(most));
     const size = [5, 2, 1].map((step) => step * power).find((value) => value <= most);
-    const length = size / forceUnit.factor * scale * this.scale;
-    element("path", this.svg, { class: "rule", d: `M12 ${height - 15}v6m0 -3h${short(length)}m0 -3v6` });
-    element("text", this.svg, { class: "scale", x: 18 + length, y: height - 8 }, `${+size.toPrecision(3)} ${forceUnit.unit}`);
+    const seen = pixels > 0 && Number.isFinite(size), length = seen ? size / factor * pixels : 0;
+    put(this.rule, { d: seen ? `M12 ${this.tall - 15}v6m0 -3h${short(length)}m0 -3v6` : "" });
+    put(this.size, { x: short(18 + length), y: this.tall - 8 });
+    this.size.textContent = seen ? `${+size.toPrecision(3)} ${unit}` : "";
   }
 
   show(index) {
     this.index = index;
-    const row = index % this.count;
-    this.strokes.forEach((stroke, number) => {
-      if (stroke.poses) {
-        const [x, y, angle] = stroke.poses.subarray(3 * row, 3 * row + 3);
-        this.paths[number].setAttribute("transform", `translate(${short(this.originX + this.scale * x)} ${short(this.originY - this.scale * y)}) rotate(${(-180 / Math.PI * angle).toFixed(3)})`);
-      } else if (stroke.shapes) {
-        this.paths[number].setAttribute("d", this.outline(stroke, false, row * stroke.points.length));
-      }
-    });
-    this.machine.moving.forEach((name, number) => {
-      const [x, y] = this.at(this.joints[name], row);
-      this.pins[number].setAttribute("cx", short(x));
-      this.pins[number].setAttribute("cy", short(y));
-    });
-    this.masses.forEach((places, number) => {
-      this.centres[number].setAttribute("transform", `translate(${this.at(places, row).map(short).join(" ")})`);
-    });
+    if (!this.data) return;
+    const row = index % this.machine.count;
+    this.machine.show(row);
+    if (this.otherData) this.other.show(index % this.other.count);
     this.label(row);
-    for (const [name, joint] of Object.entries(this.machine.arrows)) this.point(name, this.at(this.joints[joint], row), row);
+    for (const [name, joint] of Object.entries(this.data.arrows)) this.point(name, joint, row);
     this.turn(row);
   }
 
   // Joints that coincide have one label.
   label(row) {
-    const found = [];
-    for (const name of this.machine.named) {
-      const [x, y] = this.at(this.joints[name], row);
+    const found = [], { data, names } = this;
+    for (const name of data.named) {
+      const [x, y] = this.machine.at(data.joints[name], row);
+      if (Number.isNaN(x)) continue;
       const near = found.find((item) => Math.hypot(item.x - x, item.y - y) < 7);
-      if (near) near.text += `, ${name}`; else found.push({ x, y, text: name, aside: this.machine.moving.includes(name) ? 8 : -10 - 7 * name.length });
+      const aside = data.moving.includes(name) ? 8 : -10 - 7 * name.length;
+      if (near) near.text += `, ${name}`;
+      else found.push({ x, y, text: name, aside });
     }
-    this.names.forEach((text, number) => {
-      const item = found[number];
-      text.textContent = item ? item.text : "";
-      if (item) { text.setAttribute("x", short(item.x + item.aside)); text.setAttribute("y", short(item.y - 8)); }
+    while (names.childElementCount < found.length) element("text", names, { class: "name" });
+    [...names.children].forEach((text, number) => {
+      const item = found[number], wanted = item ? item.text : "";
+      if (text.textContent !== wanted) text.textContent = wanted;
+      if (item) put(text, { x: short(item.x + item.aside), y: short(item.y - 8) });
     });
   }
 
-  point(name, [x, y], row) {
-    const { group, path, text } = this.arrows[name];
-    const [forceX, forceY] = this.forces(name, this.row, row);
-    let [alongX, alongY] = [forceX, -forceY].map((part) => this.longer * this.machine.scale * this.scale * part);
+  point(name, joint, row) {
+    const { group, path, text } = this.arrows[name], forces = this.data.forces[name];
+    const [x, y] = this.machine.at(this.data.joints[joint], row), pixels = this.longer * this.frame.scale * this.scale;
+    let [alongX, alongY] = [pixels * forces[2 * row], -pixels * forces[2 * row + 1]];
     let length = Math.hypot(alongX, alongY);
-    const longest = this.machine.longest * this.scale;
-    if (length > longest) { [alongX, alongY] = [alongX / length * longest, alongY / length * longest]; length = longest; }
-    const seen = length > 2.5 && Number.isFinite(length) && !this.hidden.has(name);
+    const longest = this.frame.longest * this.scale;
+    if (length > longest) {
+      [alongX, alongY] = [alongX / length * longest, alongY / length * longest];
+      length = longest;
+    }
+    const seen = length > 2.5 && Number.isFinite(alongX + alongY + x) && !this.hidden.has(name);
     group.setAttribute("visibility", seen ? "visible" : "hidden");
     if (!seen) return;
-    const [unitX, unitY] = [alongX / length, alongY / length], head = Math.min(HEAD, 0.6 * length);
+    const [unitX, unitY] = [alongX / length, alongY / length], head = Math.min(HEAD, 0.6 * length), half = 0.38 * head;
     const [tipX, tipY] = [x + alongX, y + alongY], [footX, footY] = [tipX - head * unitX, tipY - head * unitY];
-    const half = 0.38 * head;
-    path.setAttribute("d", `M${short(x)} ${short(y)}L${short(footX)} ${short(footY)}L${short(footX - half * unitY)} ${short(footY + half * unitX)}L${short(tipX)} ${short(tipY)}L${short(footX + half * unitY)} ${short(footY - half * unitX)}L${short(footX)} ${short(footY)}`);
-    text.setAttribute("x", short(tipX + 7 * unitX + (unitX < -0.3 ? -6 * name.length : 2)));
-    text.setAttribute("y", short(tipY + 9 * unitY + 4));
-    text.setAttribute("visibility", length > 16 ? "inherit" : "hidden");
+    const corners = [[x, y], [footX, footY], [footX - half * unitY, footY + half * unitX], [tipX, tipY],
+      [footX + half * unitY, footY - half * unitX], [footX, footY]];
+    path.setAttribute("d", `M${corners.map(([cornerX, cornerY]) => `${short(cornerX)} ${short(cornerY)}`).join("L")}`);
+    put(text, {
+      x: short(tipX + 7 * unitX + (unitX < -0.3 ? -6 * name.length : 2)), y: short(tipY + 9 * unitY + 4),
+      visibility: length > 16 ? "inherit" : "hidden",
+    });
   }
 
   // The torque as an arc about the crank's axis, longer the larger it is.
   turn(row) {
-    const share = this.data.torque ? this.torque(row) / this.data.torque : 0;
-    const seen = Math.abs(share) > 0.01 && !this.hidden.has(" torque");
+    const { largest_torque: largest } = this.frame, share = largest ? this.data.torque[row] / largest : 0;
+    const seen = Math.abs(share) > 0.01 && !this.hidden.has(TORQUE);
     this.turning.setAttribute("visibility", seen ? "visible" : "hidden");
     if (!seen) return;
-    const [x, y] = this.at(this.joints[this.machine.centre], row), sense = Math.sign(share);
+    const [x, y] = this.machine.at(this.data.joints[this.data.centre], row), sense = Math.sign(share);
     const swept = Math.min(1, Math.abs(share)) * WIDEST_TURN * Math.PI / 180, start = -Math.PI / 2;
-    const on = (angle, radius = TURN_RADIUS) => [short(x + radius * Math.cos(angle)), short(y - radius * Math.sin(angle))].join(" ");
-    const end = start + sense * swept, back = end - sense * Math.min(0.32, swept);
-    const sweep = sense > 0 ? 0 : 1;
-    this.turning.setAttribute("d", `M${on(start)}A${TURN_RADIUS} ${TURN_RADIUS} 0 ${swept > Math.PI ? 1 : 0} ${sweep} ${on(end)}M${on(back, TURN_RADIUS - 5)}L${on(end)}L${on(back, TURN_RADIUS + 5)}`);
+    const on = (angle, radius) => `${short(x + radius * Math.cos(angle))} ${short(y - radius * Math.sin(angle))}`;
+    const end = start + sense * swept, back = end - sense * Math.min(0.32, swept), tip = on(end, TURN_RADIUS);
+    const arc = `A${TURN_RADIUS} ${TURN_RADIUS} 0 ${swept > Math.PI ? 1 : 0} ${sense > 0 ? 0 : 1} ${tip}`;
+    const head = `M${on(back, TURN_RADIUS - 5)}L${tip}L${on(back, TURN_RADIUS + 5)}`;
+    this.turning.setAttribute("d", `M${on(start, TURN_RADIUS)}${arc}${head}`);
   }
-
-  torque(row) { return this.forces("balancing_torque", this.row, row)[0]; }
 }
