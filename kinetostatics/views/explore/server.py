@@ -1,7 +1,6 @@
 """Server of the explore page: bound to this machine only, for those who know the token of this start."""
 
 import asyncio
-import contextlib
 import hmac
 import json
 import secrets
@@ -10,13 +9,12 @@ from importlib import resources
 
 from ...errors import MissingLibraryError
 from ..page import bundle
-from .messages import framed, packed
-from .session import OF_NEWEST, Session
+from .conversation import Conversation
+from .messages import framed
+from .session import Session
 
 ADDRESS = "127.0.0.1"
 """The only address at which the server listens."""
-PAUSE = 0.05
-"""Time until a part that is not ready is asked for again, s."""
 MAX_MESSAGE = 1_000_000
 """Largest message from a page, bytes."""
 POLICY = (
@@ -46,7 +44,7 @@ def application(session_of_page, token):
     files = {
         "/": ("text/html; charset=utf-8", resources.files(__package__).joinpath("page.html").read_bytes()),
         "/explore.js": ("text/javascript; charset=utf-8", bundle("page.js").encode()),
-        "/explore.css": ("text/css; charset=utf-8", _style().encode()),
+        "/explore.css": ("text/css; charset=utf-8", style().encode()),
     }
 
     def require_own_host(handler):
@@ -70,11 +68,10 @@ def application(session_of_page, token):
             self.finish(content)
 
     class Socket(WebSocketHandler):
-        """Requests of one page, each answered; numbers of an older state are dropped when a newer one is asked for."""
+        """Requests of one page, each answered."""
 
         def initialize(self):
-            self.session: Session | None = None
-            self.tasks: dict[str, asyncio.Task] = {}
+            self.conversation: Conversation | None = None
 
         def prepare(self):
             require_own_host(self)
@@ -89,42 +86,26 @@ def application(session_of_page, token):
             except (ValueError, TypeError, KeyError):
                 self.close(1003, "a request is JSON with a kind")
                 return
-            if self.session is None:
+            if self.conversation is None:
                 if kind != "open" or not hmac.compare_digest(str(request.get("token")).encode(), token.encode()):
                     self.close(1008, "the address is of an earlier start")
                     return
-                self.session = session_of_page()
-            found = self.session.answer(request)
-            self.drop(OF_NEWEST if kind in ("look", "drag") else [kind])
-            if isinstance(found, dict):
-                self.send(found)
-            else:
-                self.tasks[kind] = asyncio.ensure_future(self.send_parts(found))
+                self.conversation = Conversation(session_of_page(), self.send)
+            self.conversation.take(request)
 
-        def drop(self, kinds):
-            for kind in kinds:
-                if task := self.tasks.pop(kind, None):
-                    task.cancel()
-
-        def send(self, answer):
-            self.write_message(framed(*packed(answer)), binary=True)
-
-        async def send_parts(self, answers):
-            with contextlib.closing(answers):
-                for answer in answers:
-                    if answer:
-                        self.send(answer)
-                    await asyncio.sleep(0 if answer else PAUSE)
+        def send(self, header, buffers):
+            self.write_message(framed(header, buffers), binary=True)
 
         def on_close(self):
-            self.drop(list(self.tasks))
+            if self.conversation:
+                self.conversation.end()
 
     return Application(
         [*((path, File) for path in files), ("/socket", Socket)], websocket_max_message_size=MAX_MESSAGE, hosts=set()
     )
 
 
-def _style():
+def style():
     here = resources.files("kinetostatics.views.page")
     return "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "explore.css"))
 
