@@ -8,7 +8,6 @@ arguments of its process.
 import asyncio
 import contextlib
 import hmac
-import json
 import secrets
 import signal
 import threading
@@ -22,13 +21,12 @@ from ...errors import MissingLibraryError, ParameterError
 from ...numbers import checks, files
 from ...solution.scene import Scene
 from ..page import bundle
-from .messages import framed, packed
-from .session import OF_NEWEST, Session
+from .conversation import Conversation
+from .messages import framed, parsed
+from .session import Session
 
 ADDRESS = "127.0.0.1"
 """The only address at which the server listens."""
-PAUSE = 0.05
-"""Time until a part that is not ready is asked for again, s."""
 MAX_MESSAGE = 1_000_000
 """Largest message from a page, bytes."""
 TOKEN_BYTES = 24
@@ -79,76 +77,10 @@ class Gate:
         return by_token or by_ticket
 
 
-class Connection:
-    """Requests of one page, each answered in order; numbers of an older state are dropped when a newer one is asked for.
-
-    `send(bytes)` is awaited, so that a page that does not read its answers is not read either. `close(code, reason)`
-    ends the socket, `link(path)` is the address of a file for the page.
-    """
-
-    def __init__(self, gate, session_of_page, send, close, link):
-        self.gate, self.session_of_page, self.send, self.close, self.link = gate, session_of_page, send, close, link
-        self.session: Session | None = None
-        self.tasks: dict[str, asyncio.Task] = {}
-
-    async def receive(self, message):
-        """Answer a message of the page, or close the socket."""
-        try:
-            request = json.loads(message, parse_constant=_refuse_constant)
-            kind = request["kind"]
-            if not isinstance(kind, str):
-                raise TypeError(kind)
-        except (ValueError, TypeError, KeyError, RecursionError):
-            self.close(NOT_UNDERSTOOD, "a request is a JSON object with a kind")
-            return
-        if self.session is None:
-            if kind != "open" or not self.gate.admits(request.get("token")):
-                self.close(REFUSED, "This address is of an earlier start.")
-                return
-            self.session = self.session_of_page()
-        found = self.session.answer(request)
-        self.drop(OF_NEWEST if kind in ("look", "drag") else [kind])
-        if not isinstance(found, dict):
-            self.tasks[kind] = asyncio.ensure_future(self.send_parts(found))
-        elif kind == "open":
-            await self.send_answer(found | {"token": self.gate.token})
-        else:
-            await self.send_answer(found)
-
-    async def send_answer(self, answer):
-        if "report" in answer:
-            answer = answer | {"link": self.link(answer["report"])}
-        try:
-            message = framed(*packed(answer))
-        except RecursionError:  # a request nested too deeply, in its answer again
-            self.close(NOT_UNDERSTOOD, "a request is nested too deeply")
-        else:
-            await self.send(message)
-
-    async def send_parts(self, answers):
-        with contextlib.closing(answers):
-            for answer in answers:
-                if answer:
-                    await self.send_answer(answer)
-                await asyncio.sleep(0 if answer else PAUSE)
-
-    def drop(self, kinds):
-        """End the answers of some kinds that are under way."""
-        for kind in kinds:
-            if task := self.tasks.pop(kind, None):
-                task.cancel()
-
-    def end(self):
-        self.drop(list(self.tasks))
-
-
-def _refuse_constant(name):
-    raise ValueError(f"{name} is no JSON")
-
-
 def application(gate, session_of_page, hosts):
     """The Tornado application: the page, its module and style, its socket, and the reports that it made."""
     require_tornado()
+    from tornado.iostream import StreamClosedError
     from tornado.web import Application, HTTPError, RequestHandler
     from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
@@ -156,7 +88,7 @@ def application(gate, session_of_page, hosts):
     contents = {
         "/": ("text/html", resources.files(__package__).joinpath("page.html").read_bytes()),
         "/explore.js": ("text/javascript", bundle("page.js").encode()),
-        "/explore.css": ("text/css", _style().encode()),
+        "/explore.css": ("text/css", style().encode()),
     }
     reports: dict[str, Path] = {}
 
@@ -189,6 +121,12 @@ def application(gate, session_of_page, hosts):
             self.finish(content)
 
     class Socket(WebSocketHandler):
+        """Requests of one page; it waits until an answer has gone, so one that does not read is not read either."""
+
+        def initialize(self):
+            self.conversation: Conversation | None = None
+            self.sent = asyncio.ensure_future(asyncio.sleep(0))
+
         def prepare(self):  # Tornado lets requests without an origin pass
             if self.request.host not in hosts or self.request.headers.get("Origin") != f"http://{self.request.host}":
                 raise HTTPError(403)
@@ -196,18 +134,32 @@ def application(gate, session_of_page, hosts):
         def check_origin(self, origin):
             return True
 
-        def open(self):
-            self.connection = Connection(gate, session_of_page, self.send_bytes, self.close, link)
-
-        async def send_bytes(self, message):
-            with contextlib.suppress(WebSocketClosedError):
-                await self.write_message(message, binary=True)
-
         async def on_message(self, message):
-            await self.connection.receive(message)
+            try:
+                request = parsed(message)
+            except ValueError as error:
+                self.close(NOT_UNDERSTOOD, str(error))
+                return
+            if self.conversation is None:
+                if request["kind"] != "open" or not gate.admits(request.get("token")):
+                    self.close(REFUSED, "This address is of an earlier start.")
+                    return
+                self.conversation = Conversation(session_of_page(), self.send)
+            self.conversation.take(request)
+            with contextlib.suppress(WebSocketClosedError, StreamClosedError):
+                await self.sent
+
+        def send(self, header, buffers):
+            if header["kind"] == "open":
+                header["token"] = gate.token
+            if "report" in header:
+                header["link"] = link(header["report"])
+            with contextlib.suppress(WebSocketClosedError):
+                self.sent = self.write_message(framed(header, buffers), binary=True)
 
         def on_close(self):
-            self.connection.end()
+            if self.conversation:
+                self.conversation.end()
 
     return Application(
         [("/socket", Socket), (".*", File)],
@@ -216,7 +168,7 @@ def application(gate, session_of_page, hosts):
     )
 
 
-def _style():
+def style():
     here = resources.files("kinetostatics.views.page")
     return "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "explore.css"))
 
