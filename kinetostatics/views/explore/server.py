@@ -8,7 +8,7 @@ import webbrowser
 from importlib import resources
 
 from ...errors import MissingLibraryError
-from ..page import bundle
+from ..page import bundle, source
 from .conversation import Conversation
 from .messages import framed
 from .session import Session
@@ -106,8 +106,8 @@ def application(session_of_page, token):
 
 
 def style():
-    here = resources.files("kinetostatics.views.page")
-    return "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "explore.css"))
+    """Style of the page, all of it within the element of the class `explore`."""
+    return ".explore {\n" + source("style.css").replace(":root", "&") + "}\n" + source("explore.css")
 
 
 def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
