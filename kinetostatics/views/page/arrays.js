@@ -1,5 +1,5 @@
 // Numbers of a message: {"array": k, "kind": "f4" | "f8"} in its JSON stands for the array number k beside it.
-export const KINDS = { f4: Float32Array, f8: Float64Array };
+const KINDS = { f4: Float32Array, f8: Float64Array };
 
 // The value with typed arrays in place; `read(k, kind)` gives them. Objects are changed in place.
 export function restored(value, read) {

@@ -1,7 +1,7 @@
 // Requests to the library and their answers, over a socket of the server or the model of a notebook.
-import { KINDS, restored } from "./arrays.js";
+import { restored } from "./arrays.js";
 
-const ALIGNMENT = 8, LENGTH_BYTES = 4;
+const ALIGNMENT = 8, LENGTH_BYTES = 4, KINDS = { f4: Float32Array, f8: Float64Array };
 
 // Header and arrays of a binary message, as `messages.py` frames them.
 function unframed(buffer) {
@@ -28,9 +28,7 @@ export class Socket {
     this.socket.binaryType = "arraybuffer";
     this.socket.addEventListener("open", () => this.early.splice(0).forEach((text) => this.socket.send(text)));
     this.socket.addEventListener("message", (event) => this.onanswer(unframed(event.data)));
-    this.socket.addEventListener("close", (event) => {
-      this.onlost(`${event.reason || "The server has ended"}. Start it again, and load this page again.`);
-    });
+    this.socket.addEventListener("close", (event) => this.onlost(event.reason));
   }
 
   send(request) {

@@ -132,7 +132,7 @@ export class Explore {
 
   lost(reason) {
     this.root.classList.add("lost");
-    this.say(reason);
+    this.say(`${reason || "The library has ended."} Start it again, and load this page anew.`);
   }
 
   show(answer) {

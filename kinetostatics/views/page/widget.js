@@ -9,7 +9,7 @@ class Kernel {
     this.receive = ({ page, answer }, buffers) => {
       if (page === this.page) this.onanswer(restored(answer, fromBuffers(buffers)));
     };
-    this.end = () => this.onlost("The kernel has gone. Start it, and run this cell again.");
+    this.end = () => this.onlost("The kernel has ended.");
     model.on("msg:custom", this.receive);
     model.on("comm_live_update comm:close", this.end);
   }
@@ -40,7 +40,7 @@ function render({ model, el }) {
   const explore = new Explore(root, kernel, address);
   const follow = () => {
     const state = model.get("state");
-    if (JSON.stringify(state) !== JSON.stringify(explore.history.now)) explore.change(state);
+    if (explore.history && JSON.stringify(state) !== JSON.stringify(explore.history.now)) explore.change(state);
   };
   model.on("change:state", follow);
   return () => {
