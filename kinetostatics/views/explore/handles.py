@@ -91,6 +91,25 @@ def handles(solution):
     return _in_rows(points.all(), CLOSE * points.size)
 
 
+def handle_data(solution):
+    """Handles of a solution for a page, their places (N, 2) in single precision, and the snapping step, m."""
+    points = _Points(solution)
+    return {
+        "handles": [
+            {
+                "name": handle.name,
+                "label": handle.label,
+                "kind": handle.kind,
+                "paths": handle.paths,
+                "position": handle.position.T.astype(np.float32),
+                "row": handle.row,
+            }
+            for handle in _in_rows(points.all(), CLOSE * points.size)
+        ],
+        "snap": snap_step(points.size),
+    }
+
+
 def dragged(solution, name, x, y, index, snap=True):
     """Values by path that bring a point to (x, y), m, at the crank angle `index` of a solution, rounded.
 

@@ -21,6 +21,7 @@ from ..canvas import display_unit, ordinary_size
 from ..report.movement import drawing_of
 from ..report.tables import KINDS, decimals
 from . import fields
+from .handles import dragged, handle_data
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -119,13 +120,18 @@ def describe(session, request):
     return {"parameters": fields.fields(scene), "quantities": quantities}
 
 
-def look(session, request):
-    """The machine of a state over the period: its drawing and the quantities to show."""
-    scene = session.scene(request["state"])
+def _count(request):
+    """Number of crank angles of a request."""
     count = request.get("count", 360)
     if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
         raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
-    solution = scene.solve(count)
+    return count
+
+
+def look(session, request):
+    """The machine of a state over the period: its drawing and the quantities to show."""
+    scene = session.scene(request["state"])
+    solution = scene.solve(_count(request))
     known = of_scene(scene)
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
@@ -134,7 +140,27 @@ def look(session, request):
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, name) for name in request.get("show", ()) if name in known},
+        **handle_data(solution),
     }
+
+
+def drag(session, request):
+    """The machine with a point dragged to (x, y) at the crank angle `index`; its state is another.
+
+    Numbers that are impossible change nothing; a machine that cannot be assembled is a state with a problem.
+    """
+    state = request["state"]
+    solution = session.scene(state).solve(_count(request), on_gap="nan")
+    place = float(request["x"]), float(request["y"]), request["index"] % solution.crank_angle.size
+    moved = dragged(solution, request["handle"], *place, request.get("snap", True))
+    own = session.base(state).parameters
+    values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
+    new = state | {"values": values}
+    session.scene(new)
+    try:
+        return {"state": new} | look(session, request | {"state": new})
+    except KinetostaticsError as error:
+        return {"state": new, "problem": str(error)}
 
 
 def curve(solution, name):
@@ -154,7 +180,7 @@ def curve(solution, name):
     }
 
 
-ANSWERS = {"open": open_page, "describe": describe, "look": look}
+ANSWERS = {"open": open_page, "describe": describe, "look": look, "drag": drag}
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
 OF_NEWEST: tuple[str, ...] = ()
 """Kinds of requests whose answers are dropped when a newer state is asked for."""
