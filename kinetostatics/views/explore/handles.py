@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...machine.dimensions import Angle, Radius, Span, of_point_on_link
+from ...machine.group import CRANK
 from ...machine.guide import Guide
 from ...machine.loads.load import Load
 from ...numbers.paths import Place
@@ -24,9 +25,9 @@ ANGLE_STEP, DEGREE = 1.0, math.pi / 180.0
 """Snapping step of angles, degrees; and a degree in rad."""
 FINE = 100.0
 """Snapping step over the rounding step without snapping."""
-ARM, OVERHANG = 0.3, 0.07
-"""Distance of a point that turns a line from its vertex, and of points of a guide from the travel of its slider, over
-the largest extent of the joints."""
+ARM, OVERHANG = 0.15, 0.07
+"""Distance of a point that turns a line without a slot from its vertex, and of points of a guide from the travel of its
+slider, over the largest extent of the joints."""
 CLOSE = 0.025
 """Distance of two points in all poses, over that extent, below which they are shown side by side."""
 POSES_COMPARED = 12
@@ -54,7 +55,7 @@ class Handle(NamedTuple):
     measure : function of a place (x, y) and the index of a pose
         Numbers that bring the point there, or as near as its line allows.
     row : int
-        Number of earlier points at nearly the same place in all poses.
+        Number of earlier points, and pins of the crank, at nearly the same place in all poses.
     """
 
     name: str
@@ -88,7 +89,7 @@ def handles(solution):
     ['crank length', 'coupler length', 'guide angle', 'guide offset', 'mass centre of the slider']
     """
     points = _Points(solution)
-    return _in_rows(points.all(), CLOSE * points.size)
+    return _in_rows(points.all(), points.crank_pins(), CLOSE * points.size)
 
 
 def handle_data(solution):
@@ -104,7 +105,7 @@ def handle_data(solution):
                 "position": handle.position.T.astype(np.float32),
                 "row": handle.row,
             }
-            for handle in _in_rows(points.all(), CLOSE * points.size)
+            for handle in _in_rows(points.all(), points.crank_pins(), CLOSE * points.size)
         ],
         "snap": snap_step(points.size),
     }
@@ -165,16 +166,16 @@ def _near(angle, old):
     return old + math.remainder(angle - old, 2.0 * math.pi)
 
 
-def _in_rows(found, close):
-    """Handles with the number of earlier ones at nearly the same place."""
+def _in_rows(found, pins, close):
+    """Handles with the number of earlier ones, and of other pins, at nearly the same place."""
     every = max(1, found[0].position.shape[-1] // POSES_COMPARED) if found else 1
-    places = np.array([handle.position[:, ::every] for handle in found])
-    rows: list[int] = []
-    for number, place in enumerate(places):
+    places = np.array([position[:, ::every] for position in (*pins, *(handle.position for handle in found))])
+    rows = [0] * len(pins)
+    for number, place in enumerate(places[len(pins) :], len(pins)):
         with np.errstate(invalid="ignore"):
             near = (np.abs(places[:number] - place) < close).all(axis=(1, 2))
         rows.append(max((row for row, is_near in zip(rows, near, strict=True) if is_near), default=-1) + 1)
-    return [handle._replace(row=row) for handle, row in zip(found, rows, strict=True)]
+    return [handle._replace(row=row) for handle, row in zip(found, rows[len(pins) :], strict=True)]
 
 
 def _words(path):
@@ -188,7 +189,8 @@ class _Points:
 
     def __init__(self, solution):
         self.solution, self.mechanism, self.motion = solution, solution.mechanism, solution.dynamics
-        self.size = Shape(self.motion).size
+        self.shape = Shape(self.motion)
+        self.size = self.shape.size
 
     def all(self, name=None):
         """Handles: joints, other points, guides and angles, mass centres; with a name that one alone."""
@@ -200,6 +202,12 @@ class _Points:
         found.sort(key=lambda handle: KINDS.index(handle.kind))
         centres = {f"{link}.centre.along": link for link, body in self.mechanism.links.items() if body.mass != 0}
         return found + [self.mass_centre(link) for path, link in centres.items() if name in (None, path)]
+
+    def crank_pins(self):
+        """Positions of the joints that turn with the crank; they stay free, because they turn it in the drawing."""
+        made = self.mechanism
+        names = [name for name, point in made.joints.items() if point.link == CRANK]
+        return [self.at(name) for name in (*names, *(slot.joint for slot in made.slots if slot.link == CRANK))]
 
     def declared(self):
         """Path, steps and dimension of each number that a part or load declares."""
@@ -219,7 +227,7 @@ class _Points:
             turns = isinstance(first, Angle)
             return self.turned_guide(paths, guide, slider) if turns else self.shifted_guide(paths, guide, slider)
         if isinstance(first, Angle):
-            return self.turned_line(paths, first, owners[0])
+            return self.turned_line(paths, first)
         if isinstance(first, Radius):
             return self.circle(paths, first)
         if first.along is not None:
@@ -322,18 +330,25 @@ class _Points:
         label = _words(paths[0].removesuffix(".x").replace("exact", "guide_angle"))
         return Handle(paths[0], label, "turn", paths, position, measure)
 
-    def turned_line(self, paths, angle, group):
+    def turned_line(self, paths, angle):
         """Point of a line that turns about a joint; the line of a slot about the joint that slides in it."""
         carrier = self.mechanism.joints[angle.at].link
-        vertex = self.at(next((slot.joint for slot in group.slots if slot.link == carrier), angle.at))
         base, value = math.atan2(*angle.start[::-1]), self.solution.places[paths[0]].value(self.solution)
-        ray = np.array([[math.cos(base + value)], [math.sin(base + value)]])
+        ray = np.array([math.cos(base + value), math.sin(base + value)])
+        vertex = self.at(angle.at)
+        position = vertex + ARM * self.size * ray[:, None]
+        for slot, ends in self.shape.slots:
+            if slot.link == carrier:  # just behind its farther end
+                far, along = ends[:, 1], np.array([math.cos(slot.angle), math.sin(slot.angle)])
+                far = far + math.copysign(self.shape.unit, far @ along) * along
+                vertex, position = self.at(slot.joint), self.at((carrier, *map(float, far)))
+        sides = np.sign(ray @ (position - vertex))
 
         def measure(place, index):
-            x, y = place - vertex[:, index]
+            x, y = sides[index] * (place - vertex[:, index])
             return [_near(math.atan2(y, x) - base, value)]
 
-        return Handle(paths[0], _words(paths[0]), "turn", paths, vertex + ARM * self.size * ray, measure)
+        return Handle(paths[0], _words(paths[0]), "turn", paths, position, measure)
 
     def slot(self, paths, span, group):
         """Foot of a slotted lever's axis, on the circle over pivot and block."""

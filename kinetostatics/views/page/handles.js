@@ -16,6 +16,8 @@ const NUDGES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowD
 const HINT = "Arrow keys move it by a step, with Shift by ten; Alt moves it without snapping.";
 
 export class Handles {
+  // `ondrag(wanted)` is called at most once a frame while a point moves, `ondrop(wanted)` at its end: {handle, x, y, index,
+  // snap}, the place in m at the crank angle of an index.
   // `fields` are those of the parameters, by path: {label, unit, factor}.
   constructor(drawing, fields = new Map()) {
     Object.assign(this, { drawing, fields, items: [], grips: new Map(), values: {}, index: 0, held: null, asked: null });
@@ -141,13 +143,16 @@ export class Handles {
     Object.assign(this.held, { x, y, snap });
     this.aim();
     this.tell(this.held.grip);
-    this.asked ??= requestAnimationFrame(() => this.ask());
+    this.asked ??= requestAnimationFrame(() => {
+      this.asked = null;
+      this.ondrag(this.wanted);
+    });
   }
 
-  ask() {
-    this.asked = null;
+  // Request of the present place.
+  get wanted() {
     const { grip, x, y, index, snap } = this.held;
-    this.ondrag({ handle: grip.name, x, y, index, snap });
+    return { handle: grip.name, x, y, index, snap };
   }
 
   // A cross where the pointer wants the point.
@@ -161,14 +166,12 @@ export class Handles {
   }
 
   drop() {
-    if (this.asked !== null) {
-      cancelAnimationFrame(this.asked);
-      this.ask(); // the last place
-    }
-    const { grip, snap } = this.held;
+    cancelAnimationFrame(this.asked);
+    this.asked = null;
+    const { grip, snap } = this.held, { wanted } = this;
     this.held = null;
     for (const group of [this.layer, grip.group]) group.classList.remove("held");
     this.mark.setAttribute("visibility", "hidden");
-    if (snap !== undefined) this.ondrop(); // it was moved
+    if (snap !== undefined) this.ondrop(wanted); // it was moved
   }
 }
