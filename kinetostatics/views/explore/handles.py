@@ -12,10 +12,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...errors import ParameterError
 from ...machine.dimensions import Angle, Radius, Span, of_point_on_link
 from ...machine.group import CRANK
 from ...machine.guide import Guide
 from ...machine.loads.load import Load
+from ...numbers import checks
 from ...numbers.paths import Place
 from ..strokes import Shape, left
 
@@ -119,7 +121,7 @@ def dragged(solution, name, x, y, index, snap=True):
 
     Raises
     ------
-    ValueError
+    ParameterError
         The solution has no point of that name.
 
     Examples
@@ -130,7 +132,9 @@ def dragged(solution, name, x, y, index, snap=True):
     ({'crank_length': 0.33}, {'crank_length': 0.327})
     """
     points = _Points(solution)
-    (handle,) = points.all(name)
+    handle = next(iter(points.all(name)), None) if isinstance(name, str) else None
+    if handle is None:
+        raise ParameterError(f"there is no point {checks.shown(name)} to drag")
     old = [float(solution.places[path].value(solution)) for path in handle.paths]
     new = [float(value) for value in handle.measure(np.array([x, y], dtype=float), index)]
     unit = solution.places[name].rule.unit
