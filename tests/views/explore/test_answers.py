@@ -12,6 +12,7 @@ PUMP = ks.crank_slider(0.05, 0.2, coupler=ks.Link(0.4, 0.1, 0.001), slider=ks.Li
 RUBBED = ks.Scene(PUMP, 100.0, loads=[ks.Gravity(), ks.ProcessForce(300.0)], friction={"O": ks.PinFriction(0.1, 0.01)})
 HEAVIER = RUBBED.varied({"slider.mass": 2.0})
 SAW = ks.load_case("sawframe_2r63").variants["cam-circle"].scene
+DRAGGED = ks.Scene(PUMP, 100.0, loads=ks.Torque(5.0, on="coupler", opposing=True))
 STILL = ks.Scene(ks.crank_slider(0.05, 0.2), 100.0)
 
 
@@ -66,6 +67,7 @@ def test_what_jams_has_no_mean_and_says_why():
         (RUBBED, "mean balancing_torque"),
         (RUBBED, "largest O"),
         (SAW, "mean_absolute balancing_torque"),
+        (DRAGGED, "largest_absolute balancing_torque"),
     ],
 )
 def test_sensitivities_agree_with_differences(scene, text):
