@@ -18,6 +18,7 @@ import traceback
 import warnings
 from typing import Any, NamedTuple
 
+from ...design.constraints import parse_output
 from ...design.optimisation import optimise
 from ...design.search import LIMIT_TOLERANCE
 from ...errors import KinetostaticsError
@@ -147,6 +148,7 @@ class _Reporter:
 
     def __init__(self, task, send):
         self.task, self.send, self.count, self.best, self.sent = task, send, 0, None, 0.0
+        _, self.unit = parse_heading(parse_output(task.output, task.scene).column)
 
     def __call__(self, step):
         self.count += 1
@@ -157,7 +159,9 @@ class _Reporter:
         if time.monotonic() - self.sent >= REPORT_INTERVAL:
             self.sent, best = time.monotonic(), self.best[1]
             kept = best.missed <= LIMIT_TOLERANCE
-            self.send({"step": self.count, "goal": best.goal, "best": best.values, "kept": kept})
+            factor, unit = display_unit(self.unit, [[best.goal]])
+            goal = {"goal": number(factor * best.goal), "unit": pretty_unit(unit)}
+            self.send({"step": self.count, "best": best.values, "kept": kept} | goal)
 
 
 def work(given):

@@ -1,21 +1,15 @@
 // The explore page: the mechanism, its forces and its numbers, all of one state; in a page or a notebook.
+import { Ask } from "./ask.js";
 import { Chart } from "./chart.js";
 import { Clock } from "./clock.js";
 import { Requests } from "./connection.js";
 import { Drawing } from "./drawing.js";
 import { History } from "./history.js";
+import { made } from "./html.js";
 import { Parameters } from "./parameters.js";
 
 const COUNT = 360, FIRST_CHARTS = 3;
 const NOW = "#1f4e79", BEFORE = "#6b7280";
-
-function made(parent, name, attributes = {}, text = "") {
-  const element = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  if (text) element.textContent = text;
-  parent.append(element);
-  return element;
-}
 
 export class Explore {
   // `transport` sends requests; `address` keeps what is shown, {read(), write(fields)}.
@@ -43,12 +37,38 @@ export class Explore {
     this.figures = made(body, "section", { class: "charts", "aria-label": "curves" });
     this.side = made(body, "section", { class: "numbers", "aria-label": "parameters" });
     this.below = made(this.root, "section", { class: "below" });
+    this.questions = new Ask(this.below, this.asking());
   }
 
   button(text, onclick) {
     const button = made(this.tools, "button", { type: "button" }, text);
     button.addEventListener("click", onclick);
     return button;
+  }
+
+  // What questions need of the page.
+  asking() {
+    return {
+      ask: (kind, fields, onanswer) => this.requests.ask(kind, fields, onanswer),
+      state: () => this.shown?.state,
+      reference: () => this.reference?.state ?? null,
+      shown: () => this.drawn.filter((name) => name in this.shown.quantities),
+      values: () => this.shown.values,
+      ends: (path) => {
+        const { low, high } = this.known.parameters.find((field) => field.path === path);
+        return [low, high];
+      },
+      focus: (path) => this.parameters.focus(path),
+      take: (values) => {
+        const { variant, values: before } = this.history.now;
+        this.change({ variant, values: { ...before, ...values } });
+      },
+      band: (name, band) => {
+        const { factor } = this.shown.quantities[name] ?? {};
+        const side = (values) => values.map((value) => factor * value);
+        this.charts.get(name)?.band(band && { x: this.shown.angle, low: side(band.low), high: side(band.high) });
+      },
+    };
   }
 
   open(answer) {
@@ -71,6 +91,7 @@ export class Explore {
     this.requests.ask("describe", { state }, (answer) => {
       if (answer.problem) { this.say(answer.problem); return; }
       this.known = answer;
+      this.questions.describe(answer);
       this.describedFor = state.variant;
       this.names ??= answer.quantities.slice(0, FIRST_CHARTS).map(({ name }) => name);
       this.parameters = new Parameters(this.side, answer.parameters, (path, value, still) => this.set(path, value, still));
@@ -141,6 +162,7 @@ export class Explore {
       this.say(answer.problem);
       this.drawing?.setGhost(true);
       this.charts.forEach((chart) => chart.stale(true));
+      this.questions.blank();
       return;
     }
     this.say(answer.notes.join(" "));
@@ -163,6 +185,7 @@ export class Explore {
     this.drawing.setGhost(false);
     for (const name of this.names) this.chart(name);
     this.follow(this.clock.index);
+    this.questions.changed();
   }
 
   chart(name) {

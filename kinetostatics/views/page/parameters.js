@@ -24,6 +24,12 @@ export class Parameters {
 
   rounded(text, { factor, decimals }) { return Number(Number(text).toFixed(decimals)) / factor; }
 
+  focus(path) {
+    const { slider } = this.rows.get(path);
+    slider.scrollIntoView({ block: "center" });
+    slider.focus();
+  }
+
   show(values) {
     for (const [path, { field, slider, number }] of this.rows) {
       if (!(path in values)) continue;

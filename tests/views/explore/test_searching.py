@@ -76,8 +76,8 @@ def test_result_is_that_of_the_library():
     (row,) = last["rows"]
     assert row["output"] == "rms balancing_torque"
     assert float(row["after"]) < float(row["before"])
-    assert steps and all(step.keys() == {"step", "goal", "best", "kept"} for step in steps)
-    goals = [step["goal"] for step in steps]
+    assert steps and all(step.keys() == {"step", "goal", "unit", "best", "kept"} for step in steps)
+    goals = [float(step["goal"]) for step in steps]
     assert goals == sorted(goals, reverse=True)
     assert VARY.keys() == steps[0]["best"].keys()
 
