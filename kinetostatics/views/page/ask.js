@@ -94,8 +94,9 @@ export class Ask {
   follow() {
     clearTimeout(this.timer);
     this.stops.splice(0).forEach((stop) => stop());
-    const state = this.page.state(), show = this.page.shown();
+    const state = this.page.state();
     if (!state || !this.fields) return;
+    const show = this.page.shown();
     if (this.isOpen(this.notes)) this.askNumbers(state, show);
     if (this.isOpen(this.bars.root)) this.askBars(state);
     if (this.isOpen(this.uncertainties.root)) this.askBands(state, show);
@@ -115,7 +116,7 @@ export class Ask {
     this.collect("ask", { state, reference: this.page.reference(), show }, (parts, problem) => {
       const [extremes, figures] = ["extremes", "figure"].map((kind) => parts.map((part) => part[kind]).filter(Boolean));
       this.notes.textContent = [...new Set([problem, ...extremes.flatMap(({ notes }) => notes),
-        ...figures.map((figure) => figure.problem)])].filter(Boolean).join(" ");
+        ...figures.map((figure) => figure.problem)])].filter(Boolean).join("\n");
       if (problem) return;
       this.extremes.show(extremes);
       this.figures.show(figures);

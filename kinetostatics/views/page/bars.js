@@ -58,12 +58,13 @@ export class SensitivityBars {
   bar(row, length) {
     const button = this.entry(this.list, row, percent(row.share)), size = Math.abs(length) * WIDE / 2;
     button.title = `${row.slope}. Go to its slider`;
-    const svg = element("svg", button, { viewBox: `0 0 ${WIDE} ${HIGH}`, preserveAspectRatio: "none", "aria-hidden": "true" });
+    const svg = element("svg", button, { viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" });
+    svg.setAttribute("preserveAspectRatio", "none");
     element("rect", svg, {
       x: length > 0 ? WIDE / 2 : WIDE / 2 - size, y: 2, width: size, height: HIGH - 4,
       class: length > 0 ? "more" : "less",
     });
     element("path", svg, { d: `M${WIDE / 2} 0V${HIGH}` });
-    button.insertBefore(svg, button.lastChild);
+    button.insertBefore(svg, button.children[1]);
   }
 }

@@ -8,11 +8,11 @@ const REDUCTIONS = {
 
 export class OutputChoice {
   constructor(parent, words, onchange) {
-    const line = made(parent, "p", { class: "output" });
-    this.reduction = made(line, "select", { "aria-label": "which number" });
+    this.line = made(parent, "p", { class: "output" });
+    this.reduction = made(this.line, "select", { "aria-label": "which number" });
     for (const [name, title] of Object.entries(REDUCTIONS)) made(this.reduction, "option", { value: name }, title);
-    line.append(` ${words} `);
-    this.quantity = made(line, "select", { "aria-label": "of which quantity" });
+    this.line.append(` ${words} `);
+    this.quantity = made(this.line, "select", { "aria-label": "of which quantity" });
     for (const select of [this.reduction, this.quantity]) select.addEventListener("change", onchange);
   }
 

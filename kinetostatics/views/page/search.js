@@ -10,9 +10,11 @@ export class Search {
     Object.assign(this, { page, stop: null, fields: new Map(), found: null });
     this.root = made(parent, "form", { class: "search" });
     this.root.addEventListener("submit", (event) => { event.preventDefault(); this.start(); });
-    this.goal = made(made(this.root, "p"), "select", { "aria-label": "goal" });
+    this.goal = document.createElement("select");
+    this.goal.setAttribute("aria-label", "goal");
     for (const goal of ["minimise", "maximise"]) made(this.goal, "option", { value: goal }, goal);
     this.output = new OutputChoice(this.root, "of", () => {});
+    this.output.line.prepend(this.goal, " ");
     const limits = made(this.root, "label", {}, "Limits, one a line");
     this.limits = made(limits, "textarea", { rows: 2, placeholder: "largest O <= 40 kN" });
     const varied = made(this.root, "fieldset");
@@ -23,7 +25,7 @@ export class Search {
     this.canceller = made(tools, "button", { type: "button", disabled: "" }, "Cancel");
     this.canceller.addEventListener("click", () => this.page.ask("cancel", { state: this.page.state() }, () => {}));
     this.progress = made(this.root, "p", { class: "progress", role: "status" });
-    this.result = made(this.root, "div", { class: "result" });
+    this.result = made(this.root, "div", { class: "result wide" });
   }
 
   describe(fields, quantities) {

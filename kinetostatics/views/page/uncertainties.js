@@ -55,5 +55,5 @@ export class Uncertainties {
     return number;
   }
 
-  say(problem, notes) { this.notes.textContent = problem || [...new Set(notes)].filter(Boolean).join(" "); }
+  say(problem, notes) { this.notes.textContent = problem || [...new Set(notes)].filter(Boolean).join("\n"); }
 }
