@@ -65,7 +65,7 @@ class QuantityRow(NamedTuple):
 class FigureRow(NamedTuple):
     """A figure of the whole period, SI, beside that of the reference; `ratio` is reference / value, as of `ks.compare`.
 
-    `problem` says why there is no value.
+    `problem` is the reason if there is no value.
     """
 
     label: str

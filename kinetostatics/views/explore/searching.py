@@ -29,7 +29,7 @@ from ..canvas import display_unit
 REPORT_INTERVAL = 0.1
 """Least time between two reports of the process, s."""
 END_TIME = 5.0
-"""Time in which a process must end when it is told to, s; then it is killed."""
+"""Time in which a cancelled process must end, s; then it is killed."""
 NICENESS = 10
 """Lower priority of the process, so that drags are answered first."""
 GOALS = ("minimise", "maximise")
@@ -59,8 +59,8 @@ class SearchTask(NamedTuple):
 class Search:
     """A running search.
 
-    Messages are dicts, each with one of these: "step" with the number of steps so far and the best design so far,
-    "values" with the result, "problem" with a sentence, or "cancelled".
+    Messages are dicts. Those with "step" have the number of steps and the best design so far. The last one has the
+    "values" of the result, a "problem" as a sentence, or "cancelled".
     """
 
     def __init__(self, task: SearchTask):

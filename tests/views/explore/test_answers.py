@@ -24,7 +24,8 @@ def test_extremes_are_those_of_the_library(name):
     found, other = ks.extremes(solution, name), ks.extremes(reference, name)
     assert (low, high) == pytest.approx(found.range, rel=1e-12)
     degrees = np.degrees(found.angle)
-    assert min(abs(degrees - low_at)) < 1e-9 and min(abs(degrees - high_at)) < 1e-9
+    assert min(abs(degrees - low_at)) < 1e-9
+    assert min(abs(degrees - high_at)) < 1e-9
     assert row.range == high - low
     assert row.reference == pytest.approx(abs(other.largest), rel=1e-12)
     assert row.ratio == pytest.approx(abs(other.largest / found.largest), rel=1e-12)
@@ -61,7 +62,7 @@ def test_what_jams_has_no_mean_and_says_why():
 
 
 @pytest.mark.parametrize(
-    "scene, text",
+    ("scene", "text"),
     [
         (RUBBED, "largest_absolute balancing_torque"),
         (RUBBED, "mean balancing_torque"),
@@ -93,7 +94,8 @@ def test_sensitivities_are_sorted_with_zeros_apart():
     shares = [row.share for row in answers.sensitivities(SAW, "largest O").rows]
     known = [abs(share) for share in shares if not np.isnan(share)]
     assert known == sorted(known, reverse=True)
-    assert len(known) < len(shares) and np.isnan(shares[len(known) :]).all()
+    assert len(known) < len(shares)
+    assert np.isnan(shares[len(known) :]).all()
 
 
 def test_an_output_that_is_zero_has_slopes_but_no_shares():
@@ -103,7 +105,7 @@ def test_an_output_that_is_zero_has_slopes_but_no_shares():
 
 
 @pytest.mark.parametrize(
-    "values, text, words",
+    ("values", "text", "words"),
     [
         ({}, "largest Q", "allowed"),
         ({}, "largest_at O", "jumps"),

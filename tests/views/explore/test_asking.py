@@ -21,7 +21,8 @@ def saw():
 
 def parts(session, **request):
     *found, last = session.answer({"id": 7, **request})
-    assert all(part["more"] for part in found) and all(part["id"] == 7 for part in found)
+    assert all(part["more"] for part in found)
+    assert all(part["id"] == 7 for part in found)
     assert last.get("more") is False or "problem" in last
     return found, last
 
@@ -49,7 +50,7 @@ def test_without_a_reference_the_table_has_no_ratios(saw):
 
 
 @pytest.mark.parametrize(
-    "request_, words",
+    ("request_", "words"),
     [
         ({"kind": "ask", "show": ["O"]}, "cannot be assembled"),
         ({"kind": "sensitivities", "output": "largest O"}, "cannot be assembled"),
@@ -89,7 +90,7 @@ def test_without_uncertainties_there_are_no_bands():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case, variant", [("sawframe_2r63", "cam-circle"), ("pumpjack", "weights")])
+@pytest.mark.parametrize(("case", "variant"), [("sawframe_2r63", "cam-circle"), ("pumpjack", "weights")])
 def test_questions_are_answered_soon_after_the_last_change(case, variant):
     session = Session(case, variant)
     state = {"variant": variant, "values": {}}
@@ -138,7 +139,8 @@ def test_a_search_answers_while_it_runs_and_can_be_cancelled(saw):
     assert "problem" not in saw.answer({"kind": "describe", "state": CIRCLE})
     saw.answer({"kind": "cancel"})
     *_, cancelled, last = (answer for answer in answers if answer)
-    assert cancelled["cancelled"] and not last["more"]
+    assert cancelled["cancelled"]
+    assert not last["more"]
 
 
 @pytest.mark.slow

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -55,8 +56,8 @@ def first_step(search):
 def alive(process_id):
     """Whether a process runs; one that ended is no longer there, or a zombie that nobody has waited for."""
     try:
-        with open(f"/proc/{process_id}/stat") as file:
-            return file.read().rpartition(")")[2].split()[0] != "Z"
+        status = Path(f"/proc/{process_id}/stat").read_text()
+        return status.rpartition(")")[2].split()[0] != "Z"
     except FileNotFoundError:
         return False
 
@@ -72,11 +73,13 @@ def test_result_is_that_of_the_library():
     *steps, last = messages(Search(BALANCED))
     found = ks.design.optimise(CIRCLE, VARY, "rms balancing_torque")
     assert last["values"] == found.values
-    assert last["goal"] == found.goal and last["active"] == list(found.active)
+    assert last["goal"] == found.goal
+    assert last["active"] == list(found.active)
     (row,) = last["rows"]
     assert row["output"] == "rms balancing_torque"
     assert float(row["after"]) < float(row["before"])
-    assert steps and all(step.keys() == {"step", "goal", "unit", "best", "kept"} for step in steps)
+    assert steps
+    assert all(step.keys() == {"step", "goal", "unit", "best", "kept"} for step in steps)
     goals = [float(step["goal"]) for step in steps]
     assert goals == sorted(goals, reverse=True)
     assert VARY.keys() == steps[0]["best"].keys()
@@ -94,7 +97,7 @@ def test_limits_and_a_reference_are_kept():
 
 
 @pytest.mark.parametrize(
-    "task, words",
+    ("task", "words"),
     [
         (BALANCED._replace(output="largest Q"), "allowed"),
         (BALANCED._replace(limits=("largest O <= 1 N",)), "no design that keeps all limits"),
