@@ -15,7 +15,7 @@ from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
-STARTERS = ("crank-slider", "four-bar", "chain")
+STARTERS = ("crank-slider", "four-bar", "cam", "chain")
 """Mechanisms of the case files to start from."""
 
 WIDTH_NOTE = (
