@@ -177,6 +177,9 @@ def test_reference_links_lead_to_sections():
 
 def test_documented_meanings_belong_to_known_keys():
     keys = {
-        name for model in parts.MADE_OF for key in model.model_fields for name in (key, f"{meanings.word_of(model)}.{key}")
+        name
+        for model in parts.MADE_OF
+        for key in model.model_fields
+        for name in (key, f"{meanings.word_of(model)}.{key}")
     }
     assert set(meanings.MEANINGS) <= keys

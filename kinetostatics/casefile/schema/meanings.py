@@ -130,10 +130,11 @@ def word_of(model):
 def about(model):
     """First sentence on a table."""
     if model in MADE_OF:
-        return inspect.getdoc(MADE_OF[model]).partition("\n\n")[0]
+        return (inspect.getdoc(MADE_OF[model]) or "").partition("\n\n")[0]
     return vars(model).get("__doc__") or ""
 
 
+@cache
 def meaning(model, name):
     """Meaning of a key of a table; "" if it has no text."""
     if model in MADE_OF:
@@ -148,17 +149,17 @@ def meaning(model, name):
 
 def _parameter(kind, name):
     """Text on a parameter in the docstring of a class."""
-    text = re.search(rf"^{name} : .*\n((?:    .*(?:\n|\Z))+)", inspect.getdoc(kind), flags=re.MULTILINE)
+    text = re.search(rf"^{name} : .*\n((?:    .*(?:\n|\Z))+)", inspect.getdoc(kind) or "", flags=re.MULTILINE)
     return " ".join(text[1].split()) if text else ""
 
 
 @cache
 def _texts_below(model):
     """Texts below the fields of a class."""
-    body = ast.parse(dedent(inspect.getsource(model))).body[0].body
+    tree: typing.Any = ast.parse(dedent(inspect.getsource(model)))
     return {
         field.target.id: text.value.value
-        for field, text in pairwise(body)
+        for field, text in pairwise(tree.body[0].body)
         if isinstance(field, ast.AnnAssign)
         and isinstance(text, ast.Expr)
         and isinstance(text.value, ast.Constant)
