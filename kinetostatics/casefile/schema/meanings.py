@@ -161,6 +161,7 @@ def _texts_below(model):
         field.target.id: text.value.value
         for field, text in pairwise(tree.body[0].body)
         if isinstance(field, ast.AnnAssign)
+        and isinstance(field.target, ast.Name)
         and isinstance(text, ast.Expr)
         and isinstance(text.value, ast.Constant)
         and isinstance(text.value.value, str)

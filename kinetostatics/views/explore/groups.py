@@ -52,10 +52,13 @@ REFERENCES = ("on", "against", "at", "between", "along")
 
 
 class ChainError(ParameterError):
-    """Faults of a chain; `faults` are pairs of keys and sentence, keys from the top of its table."""
+    """Faults of a chain: `faults` are pairs of keys, from the top of its table, and sentence.
 
-    def __init__(self, faults):
-        self.faults = tuple(faults)
+    `carried` are the places of the parts attached to one that cannot be removed alone.
+    """
+
+    def __init__(self, faults, carried=()):
+        self.faults, self.carried = tuple(faults), tuple(carried)
         super().__init__("; ".join(sentence for _, sentence in self.faults))
 
 
@@ -260,8 +263,7 @@ def _removed(chain, raw, at, attached):
     gone = _with_attached(chain, tuple(at)) if at[0] == "groups" else [tuple(at)]
     if len(gone) > 1 and not attached:
         names = ", ".join(_name(raw, place) for place in gone[1:])
-        sentence = f"{_name(raw, gone[0])} carries {names}; remove these too"
-        raise ChainError([(tuple(at), sentence)])
+        raise ChainError([(tuple(at), f"{_name(raw, gone[0])} carries {names}; remove these too")], gone[1:])
     found: dict[str, Any] = {}
     for key, value in raw.items():
         if isinstance(value, list) and key in MODELS:
@@ -378,6 +380,38 @@ def parts_of(state):
     free = [joint for joint in mechanism.pairs if joint not in raw.get("friction", {})]
     kinds += [{"at": ["friction"], "kind": joint, "about": f"Friction at {joint}."} for joint in free]
     return {"parts": found, "kinds": kinds}
+
+
+def answer_groups(session, request):
+    """Parts of the chain of a state, and kinds to add."""
+    return parts_of(_with_chain(request))
+
+
+def answer_edit(session, request):
+    """State after an action, or its faults: each with the key of the field that it names, or ""."""
+    action = request.get("action")
+    checks.require("explore", checks.mapping("action", action))
+    try:
+        state, notes = state_after(_with_chain(request), action)
+    except ChainError as error:
+        place = tuple(action.get("at") or ())
+        faults = [{"key": _key(keys, place), "text": sentence} for keys, sentence in error.faults]
+        return {"problem": str(error), "faults": faults, "carried": list(error.carried)}
+    return {"state": state, "notes": notes}
+
+
+def _with_chain(request):
+    """State of a request that must have a chain."""
+    state = request.get("state")
+    if not isinstance(state, dict) or "chain" not in state:
+        raise ParameterError("explore: only a chain that was begun by --new has groups to change")
+    return state
+
+
+def _key(keys, place):
+    """Key of a form at a place for the keys of a fault; "" if it belongs to another part."""
+    inner = keys[len(place) :] if keys[: len(place)] == place else ()
+    return ".".join(key for key in inner if isinstance(key, str))
 
 
 def _title(raw, at):

@@ -423,6 +423,36 @@ def test_parts_show_the_numbers_of_the_sliders():
     json.dumps(parts)
 
 
+# Requests of a page
+
+
+def test_a_page_asks_for_parts_and_actions():
+    state = state_of("four-bar")
+    parts = groups.answer_groups(None, {"state": state})["parts"]
+    assert [part["title"] for part in parts] == ["crank", "gravity", "1 rocker", "1 torque", "2 force"]
+    found = groups.answer_edit(None, {"state": state, "action": {"do": "add", "at": ["groups"], "kind": "slider"}})
+    assert len(found["state"]["chain"]["groups"]) == 2
+    removal = {"do": "remove", "at": ["groups", 0]}
+    refused = groups.answer_edit(None, {"state": found["state"], "action": removal})
+    assert refused["carried"] == [("groups", 1), ("loads", 0), ("loads", 1)]
+    wrong = {"do": "change", "at": ["groups", 0], "keys": {"pivot": "1 m, x", "coupler.mass": "-1 kg"}}
+    refused = groups.answer_edit(None, {"state": state, "action": wrong})
+    assert [fault["key"] for fault in refused["faults"]] == ["pivot", "coupler.mass"]
+
+
+@every("state", [None, {}, {"variant": "plain", "values": {}}], ids=str)
+def test_only_a_chain_has_groups(state):
+    for answer in (groups.answer_groups, groups.answer_edit):
+        with pytest.raises(ks.ParameterError, match="only a chain that was begun by --new"):
+            answer(None, {"state": state, "action": {"do": "remove", "at": []}})
+
+
+def test_a_broken_chain_and_an_action_without_a_place_end_in_words():
+    found = groups.answer_edit(None, {"state": {"chain": {"crank_speed": "x"}}, "action": {}})
+    assert "crank_speed must be" in found["problem"]
+    assert {fault["key"] for fault in found["faults"]} == {"crank_speed", "groups"}
+
+
 # A chain of many actions is the same from a file
 
 
