@@ -394,7 +394,7 @@ def answer_edit(session, request):
     try:
         state, notes = state_after(_with_chain(request), action)
     except ChainError as error:
-        place = tuple(action.get("at") or ())
+        place = tuple(action["at"]) if isinstance(action.get("at"), list) else ()
         faults = [{"key": _key(keys, place), "text": sentence} for keys, sentence in error.faults]
         return {"problem": str(error), "faults": faults, "carried": list(error.carried)}
     return {"state": state, "notes": notes}
