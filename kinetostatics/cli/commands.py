@@ -285,6 +285,13 @@ def report(options):
         print(f"wrote {options.pdf}")
 
 
+def explore(options):
+    from ..views.explore.server import serve
+
+    case = output.read_case(options)
+    serve(case, options.variant, options.folder, options.port, browser=not options.no_browser)
+
+
 def drive(options):
     from ..casefile.variant import run_under_motors
     from ..drive.savings import energy_table, running_table
