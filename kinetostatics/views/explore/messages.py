@@ -1,15 +1,37 @@
-"""Answers as messages: JSON with places for arrays, and the bytes of the arrays behind it."""
+"""Requests as JSON; answers as messages: JSON with places for arrays, and the bytes of the arrays behind it."""
 
 import json
 import math
 
 import numpy as np
 
+from ...casefile.reading import is_deeper
+
 LENGTH_BYTES = 4
 """Bytes in front of a message with the length of its JSON, little-endian."""
 ALIGNMENT = 8
 """The JSON ends and arrays begin at multiples of this, as typed arrays in browsers must."""
 KINDS = {np.dtype(np.float32): "f4", np.dtype(np.float64): "f8"}
+
+MAX_DEPTH = 20
+"""Largest depth of nested objects and lists of a request."""
+
+
+def parsed(message):
+    """The request in a message: a dict with a whole number `id` and a text `kind`; `ValueError` for all others."""
+    try:
+        request = json.loads(message, parse_constant=_refuse_constant)
+    except (ValueError, RecursionError):
+        raise ValueError("a request is JSON in UTF-8, nested at most 20 deep") from None
+    if not isinstance(request, dict) or type(request.get("id")) is not int or not isinstance(request.get("kind"), str):
+        raise ValueError("a request is an object with a whole number id and a text kind")
+    if is_deeper(request, MAX_DEPTH):
+        raise ValueError("a request is JSON in UTF-8, nested at most 20 deep")
+    return request
+
+
+def _refuse_constant(name):
+    raise ValueError(f"{name} is no JSON")
 
 
 def packed(answer):

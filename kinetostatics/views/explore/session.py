@@ -4,9 +4,12 @@ A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that d
 request is a dict with `id` and `kind`; its answer carries the same `id` and the state to which its numbers belong.
 """
 
+import json
+import sys
 import warnings
 from collections import OrderedDict
 from types import GeneratorType
+from typing import Any
 
 import numpy as np
 
@@ -20,12 +23,17 @@ from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
 from ..report.movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import fields
+from . import answers, fields, keeping, searching
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
 MAX_COUNT = 3600
 """Most crank angles of a request."""
+MAX_SHOWN = 100
+"""Most quantities of a request."""
+MAX_ADDRESS = 100_000
+"""Longest state in the address of a page, characters."""
+STATE_KEYS = ("variant", "values", "chain")
 
 
 class Session:
@@ -52,31 +60,38 @@ class Session:
             checks.require("explore", checks.choice("variant", variant, tuple(self.bases)))
         self.first = variant if variant is not None else next(iter(self.bases))
         self.folder = folder
+        self.search: Any = None
+        self.saved: tuple[dict, str, str] | None = None
+        """State saved last, the path of its file, and the name of its variant there."""
+        self._reference: tuple[Any, Any] = None, None
         self._scenes: OrderedDict[str, Scene] = OrderedDict()
 
     def answer(self, request):
         """The answer to a request, a dict, or a generator of several; a sentence `problem` on what a user can mend."""
+        request = {"state": None} | request
         try:
-            kind = request["kind"]
-            checks.require("explore", checks.choice("kind of request", kind, tuple(ANSWERS)))
+            checks.require("explore", checks.choice("kind of request", request.get("kind"), tuple(ANSWERS)))
+            for key in ("state", "reference"):
+                if request.get(key) is not None:
+                    require_state(key, request[key])
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
-                found = ANSWERS[kind](self, request)
+                found = ANSWERS[request["kind"]](self, request)
             if isinstance(found, GeneratorType):
                 return self._parts(request, found)
             notes = list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
             return self._marked(request, {"notes": notes} | found)
-        except KinetostaticsError as error:
-            return self._marked(request, {"problem": str(error)})
+        except Exception as error:
+            return self._marked(request, {"problem": problem_text(error)})
 
     def _parts(self, request, parts):
         """Answers in parts, all but the last with `more`; None where the next part is not ready."""
         try:
-            for part in parts:
+            for part in _unwarned(parts):
                 yield part and self._marked(request, {"more": True} | part)
             yield self._marked(request, {"more": False})
-        except KinetostaticsError as error:
-            yield self._marked(request, {"problem": str(error)})
+        except Exception as error:
+            yield self._marked(request, {"problem": problem_text(error)})
         finally:
             parts.close()
 
@@ -85,13 +100,14 @@ class Session:
 
     def base(self, state):
         """Scene of a state without its changed numbers."""
+        require_state("state", state)
         name = state.get("variant", self.first)
         checks.require("explore", checks.choice("variant", name, tuple(self.bases)))
         return self.bases[name]
 
     def scene(self, state):
         """Scene of a state."""
-        key = repr((state.get("variant"), sorted(state.get("values", {}).items())))
+        key = json.dumps(state, sort_keys=True)
         if key not in self._scenes:
             self._scenes[key] = self.base(state).varied(state.get("values", {}))
             while len(self._scenes) > MAX_SCENES:
@@ -99,13 +115,90 @@ class Session:
         self._scenes.move_to_end(key)
         return self._scenes[key]
 
+    def reference(self, state):
+        """Solution of the state of the reference, kept with its extremes until another one is asked for."""
+        scene = self.scene(state)
+        if self._reference[0] is not scene:
+            self._reference = scene, scene.solve(answers.COUNT)
+        return self._reference[1]
+
+
+def _unwarned(parts):
+    """Parts without warnings: `look` has them, or the parts themselves."""
+    end = object()
+    while True:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            part = next(parts, end)
+        if part is end:
+            return
+        yield part
+
+
+def require_state(key, state):
+    """Raise `ParameterError` unless this is a state."""
+    checks.require("explore", None if isinstance(state, dict) else f"{key} must be an object, got {checks.shown(state)}")
+    wrong = [checks.choice(f"key of {key}", name, STATE_KEYS) for name in state]
+    variant, values = state.get("variant", ""), state.get("values", {})
+    wrong += [] if isinstance(variant, str) else [f"variant must be a text, got {checks.shown(variant)}"]
+    if isinstance(values, dict):
+        numbers = {path: value for path, value in values.items() if is_number(value)}
+        wrong += [f"{path} must be a number, got {checks.shown(values[path])}" for path in values.keys() - numbers]
+    else:
+        wrong += [f"values must be an object, got {checks.shown(values)}"]
+    checks.require("explore", *wrong)
+
+
+def is_number(value):
+    """Whether this is a finite number of JSON; Python reads longer integers than floats can hold."""
+    return isinstance(value, float | int) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
+
+
+def problem_text(error):
+    """Sentence on an error for the page; one that is not the user's is named as a fault of the library."""
+    if isinstance(error, KinetostaticsError):
+        return str(error)
+    return f"this is a fault of the library, please report it: {type(error).__name__}: {error}"
+
 
 def open_page(session, request):
-    """What a page needs at its start."""
+    """What a page needs at its start: the state and the names of the quantities in its address, if they are valid."""
     references = session.case.reference_of if session.case else lambda name: name
     variants = [{"name": name, "reference": references(name)} for name in session.bases]
-    start = {"variant": session.first, "values": {}}
-    return {"title": session.title, "source": session.source, "variants": variants, "start": start}
+    found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
+    found["start"] = {"variant": session.first, "values": {}}
+    address = request.get("address")
+    try:
+        return found | kept_in_address(session, address if isinstance(address, dict) else {})
+    except KinetostaticsError as error:
+        return found | {"notes": [f"the address has no state of this case, so the first one is shown: {error}"]}
+
+
+def kept_in_address(session, address):
+    """State and names of quantities in the texts of an address, those that it has."""
+    found = {}
+    for key, name in (("state", "start"), ("show", "show")):
+        text = address.get(key)
+        if text is None:
+            continue
+        try:
+            short = isinstance(text, str) and len(text) <= MAX_ADDRESS
+            found[name] = json.loads(text) if short else None
+        except (ValueError, RecursionError):
+            found[name] = None
+        if found[name] is None:
+            raise ParameterError(f"{key} is no JSON of at most {MAX_ADDRESS} characters")
+    if "start" in found:
+        session.scene(found["start"])
+    if "show" in found:
+        require_names(found["show"])
+    return found
+
+
+def require_names(names):
+    """Raise `ParameterError` unless these are names of quantities to show."""
+    if not isinstance(names, list) or len(names) > MAX_SHOWN or not all(isinstance(name, str) for name in names):
+        raise ParameterError(f"explore: show must be a list of at most {MAX_SHOWN} names, got {checks.shown(names)}")
 
 
 def describe(session, request):
@@ -122,9 +215,12 @@ def describe(session, request):
 def look(session, request):
     """The machine of a state over the period: its drawing and the quantities to show."""
     scene = session.scene(request["state"])
-    count = request.get("count", 360)
-    if not isinstance(count, int) or not 1 <= count <= MAX_COUNT:
-        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {count!r}")
+    count, show = request.get("count", 360), request.get("show", [])
+    if type(count) is not int or not 1 <= count <= MAX_COUNT:
+        raise ParameterError(
+            f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}"
+        )
+    require_names(show)
     solution = scene.solve(count)
     known = of_scene(scene)
     return {
@@ -133,7 +229,7 @@ def look(session, request):
         "angle": np.degrees(solution.crank_angle),
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
-        "quantities": {name: curve(solution, name) for name in request.get("show", ()) if name in known},
+        "quantities": {name: curve(solution, name) for name in dict.fromkeys(show) if name in known},
     }
 
 
@@ -154,7 +250,19 @@ def curve(solution, name):
     }
 
 
-ANSWERS = {"open": open_page, "describe": describe, "look": look}
+ANSWERS = {
+    "open": open_page,
+    "describe": describe,
+    "look": look,
+    "ask": answers.ask,
+    "sensitivities": answers.ask_sensitivities,
+    "tolerances": answers.ask_tolerances,
+    "optimise": searching.answers,
+    "cancel": searching.cancel,
+    "save": keeping.save,
+    "python": keeping.python,
+    "report": keeping.report,
+}
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
-OF_NEWEST: tuple[str, ...] = ()
+OF_NEWEST: tuple[str, ...] = ("ask", "sensitivities", "tolerances")
 """Kinds of requests whose answers are dropped when a newer state is asked for."""

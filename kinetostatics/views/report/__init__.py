@@ -1,4 +1,4 @@
-"""Report: one HTML page with the moving mechanism, figures and tables; the folder `page` holds its template.
+"""Report: one HTML page with the moving mechanism, figures and tables; `page.html.j2` is its template.
 
 May import errors, numbers to casefile, and `views`.
 """

@@ -20,6 +20,7 @@ from ...cycle.losses import lose
 from ...errors import FileError, MissingLibraryError
 from ...numbers.formatting import pretty_unit
 from ...version import __version__
+from .. import page as page_files
 from ..canvas import display_unit, grouped
 from . import figures, tables
 from .movement import movements, to_base64
@@ -107,7 +108,7 @@ def _contents(subject, progress):
         "date": dt.date.today().isoformat(),
         "data": {**moving, **turning, "quantities": values, "colours": figures.COLOURS},
         "style": Markup(_text("style.css")),
-        "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "turning", "figures")],
+        "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "clock", "report")],
         "library": Markup("\n".join(Resources(mode="inline", components=["bokeh"]).js_raw[:1])),
         "speeds": [
             {"rpm": mean * 30.0 / math.pi, "turn": 2.0 * math.pi / mean if mean else math.inf}
@@ -194,7 +195,8 @@ def _figures(subject, values, runs):
 
 
 def _text(name):
-    return resources.files(__package__).joinpath("page", name).read_text(encoding="utf-8")
+    folder = resources.files(__package__) if name.endswith(".j2") else resources.files(page_files)
+    return folder.joinpath(name).read_text(encoding="utf-8")
 
 
 BROWSERS = (

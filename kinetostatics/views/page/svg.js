@@ -1,0 +1,16 @@
+// Elements and numbers of SVG.
+const SVG = "http://www.w3.org/2000/svg";
+
+export function element(name, parent, attributes = {}, text = "") {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  if (text) made.textContent = text;
+  if (parent) parent.appendChild(made);
+  return made;
+}
+
+export function put(target, attributes) {
+  for (const [key, value] of Object.entries(attributes)) target.setAttribute(key, value);
+}
+
+export const short = (value) => Math.round(100 * value) / 100;

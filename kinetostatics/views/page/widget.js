@@ -1,0 +1,57 @@
+// The explore page in a notebook: the widget's model carries requests and answers, and keeps the state.
+import { restored } from "./arrays.js";
+import { Explore } from "./explore.js";
+
+const KINDS = { f4: Float32Array, f8: Float64Array };
+
+// The model as a transport of one of the pages that show it.
+class Kernel {
+  constructor(model) {
+    Object.assign(this, { model, page: `${Date.now()}-${Math.random()}` });
+    this.receive = ({ page, answer }, buffers) => {
+      if (page !== this.page) return;
+      this.onanswer(restored(answer, (number, kind) => {
+        const { buffer, byteOffset, byteLength } = buffers[number];
+        return new KINDS[kind](buffer.slice(byteOffset, byteOffset + byteLength));
+      }));
+    };
+    this.end = () => this.onlost("The kernel has gone. Start it, and run this cell again.");
+    model.on("msg:custom", this.receive);
+    model.on("comm_live_update comm:close", this.end);
+  }
+
+  send(request) { this.model.send({ page: this.page, request }); }
+
+  close() {
+    this.model.off("msg:custom", this.receive);
+    this.model.off("comm_live_update comm:close", this.end);
+    this.model.send({ page: this.page });
+  }
+}
+
+function render({ model, el }) {
+  const root = document.createElement("div");
+  root.className = "explore";
+  root.dataset.lmSuppressShortcuts = "true"; // keys belong to the page, not to the notebook
+  el.append(root);
+  const kernel = new Kernel(model);
+  const address = {
+    read: () => ({ ...model.get("address"), state: JSON.stringify(model.get("state")) }),
+    write({ state, ...others }) {
+      model.set({ state: JSON.parse(state), address: { ...model.get("address"), ...others } });
+      model.save_changes();
+    },
+  };
+  const explore = new Explore(root, kernel, address);
+  const follow = () => {
+    const state = model.get("state");
+    if (JSON.stringify(state) !== JSON.stringify(explore.history.now)) explore.change(state);
+  };
+  model.on("change:state", follow);
+  return () => {
+    model.off("change:state", follow);
+    kernel.close();
+  };
+}
+
+export default { render };
