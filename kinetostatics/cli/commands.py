@@ -286,10 +286,13 @@ def report(options):
 
 
 def explore(options):
+    from ..views.explore.groups import template
     from ..views.explore.server import serve
 
-    case = output.read_case(options)
-    serve(case, options.variant, options.folder, options.port, browser=not options.no_browser)
+    if (options.case is None) == (options.new is None):
+        raise ParameterError("explore: give a case, or --new with a mechanism to begin with")
+    what = template(options.new) if options.new else output.read_case(options)
+    serve(what, options.variant, options.folder, options.port, browser=not options.no_browser)
 
 
 def drive(options):

@@ -22,14 +22,13 @@ from ...casefile.schema.meanings import about, word_of
 from ...casefile.schema.parts import GROUPS, LOADS, MADE_OF
 from ...casefile.schema.tables import GravityTable, key_path, validate_by_keys
 from ...casefile.schema.variants import ChainVariant, FrictionTable
-from ...casefile.starters import starter
+from ...casefile.starters import STARTERS, starter
 from ...errors import KinetostaticsError, ParameterError
 from ...numbers import checks
 from ...solution.scene import Scene
 from . import proposals
 from .forms import FILE_KEYS, fields, number_text, text_of, with_texts
 
-TEMPLATES = ("crank-slider", "four-bar", "cam", "chain")
 MAX_PARTS = 40
 """Most groups, and most loads, of a chain built on a page."""
 MAX_VALUES, MAX_TEXT, MAX_INTEGER = 4000, 200, 2**53
@@ -81,7 +80,7 @@ def template(kind):
     >>> [group["kind"] for group in template("cam")["groups"]], scene_of(template("four-bar")).crank_speed
     (['cam roller', 'slider'], 6.283185307179586)
     """
-    checks.require("explore", checks.choice("kind", kind, TEMPLATES))
+    checks.require("explore", checks.choice("kind", kind, STARTERS))
     raw = tomllib.loads(starter(kind, kind))
     return as_chain(inherit(raw["common"], next(iter(raw["variants"].values()))))
 

@@ -1,7 +1,8 @@
 """Session: what a page or notebook asks of a case or scene, answered without a browser.
 
-A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant. A
-request is a dict with `id` and `kind`; its answer carries the same `id` and the state to which its numbers belong.
+A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant, or
+of its `chain`, the table of a chain that is built on the page (`groups`). A request is a dict with `id` and `kind`; its
+answer carries the same `id` and the state to which its numbers belong.
 """
 
 import json
@@ -23,7 +24,7 @@ from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
 from ..report.movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import answers, fields, keeping, searching
+from . import answers, fields, groups, keeping, searching
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -37,11 +38,12 @@ STATE_KEYS = ("variant", "values", "chain")
 
 
 class Session:
-    """Answers to the requests of one page on a case, or on a scene.
+    """Answers to the requests of one page on a case, on a scene, or on a chain that is built on the page.
 
     Parameters
     ----------
-    what : Case, str, path or Scene
+    what : Case, str, path, Scene, or dict
+        A dict is the table of a chain (`groups.template`), from which the page starts.
     variant : str, optional
         Variant shown first.
     folder : path, optional
@@ -49,6 +51,9 @@ class Session:
     """
 
     def __init__(self, what, variant=None, folder=None):
+        self.chain = what if isinstance(what, dict) else None
+        if self.chain is not None:
+            what = groups.scene_of(self.chain)
         if isinstance(what, Scene):
             name = what.mechanism.name
             self.case, self.title, self.source, self.bases = None, name, "", {name: what}
@@ -103,7 +108,7 @@ class Session:
         require_state("state", state)
         name = state.get("variant", self.first)
         checks.require("explore", checks.choice("variant", name, tuple(self.bases)))
-        return self.bases[name]
+        return groups.scene_of(state["chain"]) if "chain" in state else self.bases[name]
 
     def scene(self, state):
         """Scene of a state."""
@@ -137,7 +142,9 @@ def _unwarned(parts):
 
 def require_state(key, state):
     """Raise `ParameterError` unless this is a state."""
-    checks.require("explore", None if isinstance(state, dict) else f"{key} must be an object, got {checks.shown(state)}")
+    checks.require(
+        "explore", None if isinstance(state, dict) else f"{key} must be an object, got {checks.shown(state)}"
+    )
     wrong = [checks.choice(f"key of {key}", name, STATE_KEYS) for name in state]
     variant, values = state.get("variant", ""), state.get("values", {})
     wrong += [] if isinstance(variant, str) else [f"variant must be a text, got {checks.shown(variant)}"]
@@ -166,7 +173,8 @@ def open_page(session, request):
     references = session.case.reference_of if session.case else lambda name: name
     variants = [{"name": name, "reference": references(name)} for name in session.bases]
     found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
-    found["start"] = {"variant": session.first, "values": {}}
+    chain = {} if session.chain is None else {"chain": session.chain}
+    found["start"] = {"variant": session.first, "values": {}, **chain}
     address = request.get("address")
     try:
         return found | kept_in_address(session, address if isinstance(address, dict) else {})
@@ -217,9 +225,7 @@ def look(session, request):
     scene = session.scene(request["state"])
     count, show = request.get("count", 360), request.get("show", [])
     if type(count) is not int or not 1 <= count <= MAX_COUNT:
-        raise ParameterError(
-            f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}"
-        )
+        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
     require_names(show)
     solution = scene.solve(count)
     known = of_scene(scene)
@@ -259,6 +265,8 @@ ANSWERS = {
     "tolerances": answers.ask_tolerances,
     "optimise": searching.answers,
     "cancel": searching.cancel,
+    "groups": groups.answer_groups,
+    "edit": groups.answer_edit,
     "save": keeping.save,
     "python": keeping.python,
     "report": keeping.report,

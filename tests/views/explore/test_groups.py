@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from kinetostatics.casefile.starters import STARTERS
 from kinetostatics.views.explore import groups
 from kinetostatics.views.explore.forms import fields, number_text, text_of, value_of, with_texts
+from kinetostatics.views.explore.session import Session
 from support.every import every
 
 KINDS = [(name, kind) for name, models in groups.MODELS.items() for kind in models]
@@ -70,7 +72,7 @@ def test_a_template_is_the_built_mechanism_as_a_chain(kind):
     assert_same(scene, ks.Scene(BUILT[kind](), scene.crank_speed, loads=scene.loads))
 
 
-@every("kind", groups.TEMPLATES)
+@every("kind", STARTERS)
 def test_a_template_equals_its_starter_case(kind, tmp_path):
     from kinetostatics.casefile.starters import starter
 
@@ -80,7 +82,7 @@ def test_a_template_equals_its_starter_case(kind, tmp_path):
     assert_same(groups.scene_of(groups.template(kind)), next(iter(case.variants.values())).scene)
 
 
-@every("kind", groups.TEMPLATES)
+@every("kind", STARTERS)
 def test_a_template_is_equal_when_read_from_a_file(kind, tmp_path):
     raw = groups.template(kind)
     assert_same(groups.scene_of(raw), from_file(raw, tmp_path))
@@ -451,6 +453,41 @@ def test_a_broken_chain_and_an_action_without_a_place_end_in_words():
     found = groups.answer_edit(None, {"state": {"chain": {"crank_speed": "x"}}, "action": {}})
     assert "crank_speed must be" in found["problem"]
     assert {fault["key"] for fault in found["faults"]} == {"crank_speed", "groups"}
+
+
+@every("kind", STARTERS)
+def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
+    session = Session(groups.template(kind), folder=tmp_path)
+
+    def answer(name, **fields):
+        found = session.answer({"id": 1, "kind": name, **fields})
+        assert "problem" not in found
+        return found
+
+    state = answer("open")["start"]
+    assert state["chain"] == groups.template(kind)
+    action = {"do": "add", "at": ["groups"], "kind": "dyad"}
+    state = answer("edit", state=state | {"values": {"crank_speed": 5.0}}, action=action)["state"]
+    assert "length1" in [field["path"] for field in answer("describe", state=state)["parameters"]]
+    looked = answer("look", state=state | {"values": {"dyad1.mass": 2.0}}, show=["balancing_torque"], count=24)
+    assert looked["values"]["dyad1.mass"] == 2.0
+    assert answer("save", state=looked["state"], name="mine")["saved"] == "mine.toml"
+    again = list(ks.load_case(tmp_path / "mine.toml").variants.values())[-1].scene
+    assert_same(session.scene(looked["state"]), again)
+    python = answer("python", state=looked["state"])["text"]
+    names = {}
+    exec(compile(python, "text", "exec"), names)
+    assert np.array_equal(
+        names["solution"].balancing_torque, session.scene(looked["state"]).solve(360).balancing_torque
+    )
+
+
+def test_a_hostile_chain_in_a_state_ends_in_a_message():
+    session = Session(groups.template("four-bar"))
+    for raw, words in HOSTILE.values():
+        found = session.answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
+        assert words in found["problem"] or "library" not in found["problem"]
+        assert len(found["problem"]) < 4000
 
 
 # A chain of many actions is the same from a file
