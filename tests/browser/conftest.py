@@ -13,7 +13,7 @@ TOOLS = ("chromium", "chromedriver")
 def missing():
     """What is lacking to run a browser, as a sentence, or ""."""
     lacking = [name for name in TOOLS if shutil.which(name) is None]
-    lacking += [name for name in ("selenium", "bokeh") if importlib.util.find_spec(name) is None]
+    lacking += [name for name in ("selenium", "jinja2") if importlib.util.find_spec(name) is None]
     return f"a browser is needed for these tests; not installed: {', '.join(lacking)}" if lacking else ""
 
 

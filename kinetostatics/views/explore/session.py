@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
-from ..report.movement import drawing_of
+from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
 from . import answers, fields, groups, keeping, searching
 
