@@ -291,8 +291,16 @@ def explore(options):
 
     if (options.case is None) == (options.new is None):
         raise ParameterError("explore: give a case, or --new with a mechanism to begin with")
-    what = template(options.new) if options.new else output.read_case(options)
-    serve(what, options.variant, options.folder, options.port, browser=not options.no_browser)
+    checks.require("--folder", files.folder_write_problem(options.folder) if options.folder else None)
+    serve(
+        template(options.new) if options.new else options.case,
+        options.variant,
+        options.folder or ".",
+        options.port,
+        browser=not options.no_browser,
+        tell=lambda address: print(f"{address}
+Ctrl-C ends the page", flush=True),
+    )
 
 
 def drive(options):
