@@ -288,8 +288,15 @@ def report(options):
 def explore(options):
     from ..views.explore.server import serve
 
-    case = output.read_case(options)
-    serve(case, options.variant, options.folder, options.port, browser=not options.no_browser)
+    checks.require("--folder", files.folder_write_problem(options.folder) if options.folder else None)
+    serve(
+        options.case,
+        options.variant,
+        options.folder or ".",
+        options.port,
+        browser=not options.no_browser,
+        tell=lambda address: print(f"{address}\nCtrl-C ends the page", flush=True),
+    )
 
 
 def drive(options):

@@ -15,6 +15,8 @@ from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
+MAX_PORT = 65535
+"""Largest number of a port."""
 STARTERS = ("crank-slider", "four-bar", "chain")
 """Mechanisms of the case files to start from."""
 
@@ -57,6 +59,12 @@ def _count(text, size=None):
     if problem:
         raise argparse.ArgumentTypeError(problem.removeprefix("it "))
     return count
+
+
+def _port(text):
+    if not (text.isdecimal() and int(text[:9]) <= MAX_PORT):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 0 (a free port) to {MAX_PORT}, got {text!r}")
+    return int(text)
 
 
 def _angle(text):
@@ -194,9 +202,9 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         "a page in the browser: the moving mechanism, its forces as you drag",
         CASE,
         _option("--variant", "NAME", "shown first (the first of the case)"),
-        _option("--folder", "DIR", "the only folder into which the page saves (the present one)", _text, default="."),
-        _option("--port", "N", "port of the page on this machine (a free one)", int, default=0),
-        ("--no-browser", {"action": "store_true", "help": "print the address only"}),
+        _option("--folder", "DIR", "the only folder into which the page saves (the one you are in)", _text),
+        _option("--port", "N", "port of the page, which this machine alone reaches (a free one)", _port, default=0),
+        ("--no-browser", {"action": "store_true", "help": "print the address, open no browser"}),
         UNITS,
     ),
     "precision": (

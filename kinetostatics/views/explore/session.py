@@ -15,13 +15,13 @@ import numpy as np
 
 from ...casefile.case import Case, load_case
 from ...cycle.rounding import FLOOR, zeroed
-from ...errors import KinetostaticsError, ParameterError
+from ...errors import AssemblyError, KinetostaticsError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
-from ..report.movement import drawing_of
+from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
 from . import answers, fields, keeping, searching
 
@@ -156,6 +156,8 @@ def is_number(value):
 
 def problem_text(error):
     """Sentence on an error for the page; one that is not the user's is named as a fault of the library."""
+    if isinstance(error, AssemblyError):
+        return f"{error.condition}; change the lengths"
     if isinstance(error, KinetostaticsError):
         return str(error)
     return f"this is a fault of the library, please report it: {type(error).__name__}: {error}"
