@@ -5,6 +5,7 @@ import textwrap
 from functools import partial
 from typing import Any
 
+from ..casefile.starters import STARTERS
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.formatting import normalise
@@ -17,8 +18,6 @@ DESIGN = 100
 """Size of a design with its outputs, bytes."""
 MAX_PORT = 65535
 """Largest number of a port."""
-STARTERS = ("crank-slider", "four-bar", "chain")
-"""Mechanisms of the case files to start from."""
 
 WIDTH_NOTE = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
@@ -200,8 +199,9 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
     "explore": (
         ("commands", "explore"),
         "a page in the browser: the moving mechanism, its forces as you drag",
-        CASE,
+        (CASE[0], CASE[1] | {"nargs": "?"}),
         _option("--variant", "NAME", "shown first (the first of the case)"),
+        ("--new", {"choices": STARTERS, "help": "in place of a case: a mechanism to begin with, whose groups change"}),
         _option("--folder", "DIR", "the only folder into which the page saves (the one you are in)", _text),
         _option("--port", "N", "port of the page, which this machine alone reaches (a free one)", _port, default=0),
         ("--no-browser", {"action": "store_true", "help": "print the address, open no browser"}),

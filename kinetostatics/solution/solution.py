@@ -542,7 +542,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
         shared = dict(zip(SHARED_WITH_DYNAMICS, read_shared(self), strict=True))
         return construct_unchecked(Dynamics, **shared, way=getattr(self.engine, "way", None))
 
-    placement = _member("placement")
+    placement = property(lambda self: self.dynamics.placement, doc=Dynamics.placement.__doc__)
 
     @cached_property
     def _values(self):

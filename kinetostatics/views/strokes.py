@@ -90,6 +90,25 @@ class Stroke(NamedTuple):
     points: Any
 
 
+class RigidStroke(NamedTuple):
+    """A line that moves as a rigid body: points (2, K) in axes with origin and direction (2, N) in each of N poses."""
+
+    kind: str
+    own: Any
+    origin: Any
+    direction: Any
+
+    @property
+    def points(self):
+        """Points (2, K, N) in each pose."""
+        return place_sign(self.own.T, self.origin, self.direction)
+
+
+def _placed(kind, shape, origin, direction, size=1.0, sense=1.0):
+    """Rigid stroke of a shape (K, 2); mirrored where the sense is -1."""
+    return RigidStroke(kind, size * np.asarray(shape, dtype=float).T * [[1.0], [sense]], origin, direction)
+
+
 @dataclass(frozen=True)
 class Shape:
     """Sizes and outlines of a drawing, the same in all poses, from the motion over whole turns."""
@@ -167,20 +186,20 @@ class Shape:
         for group in self.mechanism.groups:
             for link, points in group.outlines.items():
                 if link in links:
-                    yield Stroke("outline", _link_points(pose, link, points))
+                    yield _on_link("outline", pose, link, points)
         for pair in self.mechanism.pairs.values():
             if isinstance(pair, Meshing) and pair.link in links:  # pitch circles of planet and ring
                 axis = pose.position(pair.joint)
                 size = float(np.max(np.hypot(*axis)))
-                yield Stroke("outline", self._ring(axis, size, LARGE_RING))
-                yield Stroke("outline", self._ring(0.0 * axis, 2.0 * size, LARGE_RING))
+                yield _ring("outline", axis, size, LARGE_RING)
+                yield _ring("outline", 0.0 * axis, 2.0 * size, LARGE_RING)
         for link, corners in self.corners.items():
             if corners.shape[1] > 1 and link in links:
                 kind, outline = _outline(corners)
-                yield Stroke(kind, _link_points(pose, link, outline))
+                yield _on_link(kind, pose, link, outline)
         for slot, ends in self.slots:
-            line = _link_points(pose, slot.link, ends)
-            parts = self._piston(pose, slot, ends) if slot.rod else (Stroke("slotted", line), Stroke("slot", line))
+            slotted = (_on_link(kind, pose, slot.link, ends) for kind in ("slotted", "slot"))
+            parts = self._piston(pose, slot, ends) if slot.rod else slotted
             yield from (part for part in parts if (slot.rod if part.kind == "bar" else slot.link) in links)
         rods = {slot.rod for slot in self.mechanism.slots}
         for link, corners in self.corners.items():
@@ -188,27 +207,23 @@ class Shape:
                 turn = pose.as_vector(pose.placement.links[link].direction)
                 place = pose.position(self.mechanism.references[link])
                 size = self.unit if link in self.mechanism.guides else 0.8 * self.unit
-                yield Stroke("block", place_sign(RECTANGLE, place, turn, size))
+                yield _placed("block", RECTANGLE, place, turn, size)
         for joint, radius in self.mechanism.rollers.items():
             if self.mechanism.joints[joint].link not in links:
                 continue
             size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
-            yield Stroke("roller", self._ring(pose.position(joint), size))
+            yield _ring("roller", pose.position(joint), size)
 
     def _piston(self, pose, slot, ends):
         """Cylinder from the reference joint to the nearer end of the travel, and a rod in it."""
         near, far = np.hypot(*ends)
         origin, joint = pose.position(self.mechanism.references[slot.link]), pose.position(slot.joint)
         axis = (joint - origin) / np.hypot(*(joint - origin))
-        bottom = joint - axis * max(0.8 * near, far - 0.6 * near)
-        yield Stroke("bar", np.stack([joint, bottom], axis=1))
+        length = max(0.8 * near, far - 0.6 * near)
+        yield _placed("bar", [(0.0, 0.0), (-length, 0.0)], joint, axis)
         barrel = [(0.0, -0.5), (0.85 * near / self.unit, -0.5), (0.85 * near / self.unit, 0.5), (0.0, 0.5)]
-        yield Stroke("plate", place_sign(barrel, origin, axis, self.unit))
-        yield Stroke("bar", place_sign([(0.0, -0.5), (0.0, 0.5)], bottom, axis, self.unit))
-
-    def _ring(self, place, radius, points=RING):
-        level = np.broadcast_to([[1.0], [0.0]], place.shape)
-        return place_sign(points, place, level, radius)
+        yield _placed("plate", barrel, origin, axis, self.unit)
+        yield _placed("bar", [(0.0, -0.5), (0.0, 0.5)], joint - axis * length, axis, self.unit)
 
     def counterweights(self, pose):
         """Counterweights of turning links whose mass centres lie beyond their joints.
@@ -220,13 +235,13 @@ class Shape:
             arm, reach = np.hypot(along, across), self.corners[name][0].max()
             turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.unit
             if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
-                yield Stroke("bar", _link_points(pose, name, np.array([[reach, along], [0.0, across]])))
-                yield Stroke("counterweight", self._ring(pose.position(name), 2.0 * self.unit))
+                yield _on_link("bar", pose, name, np.array([[reach, along], [0.0, across]]))
+                yield _ring("counterweight", pose.position(name), 2.0 * self.unit)
             if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
                 radius = arm * 1.5 * HALF_SECTOR / np.sin(HALF_SECTOR)
                 angle = np.arctan2(across, along) + np.linspace(-HALF_SECTOR, HALF_SECTOR, 24)
                 edge = radius * np.array([np.cos(angle), np.sin(angle)])
-                yield Stroke("counterweight", _link_points(pose, name, np.column_stack([(0.0, 0.0), edge])))
+                yield _on_link("counterweight", pose, name, np.column_stack([(0.0, 0.0), edge]))
 
     @property
     def heavy(self):
@@ -250,20 +265,22 @@ class Shape:
             yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
             yield Stroke(sign.kind, span_sign([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
         elif sign.kind == "force":
-            tip = sign.start + 5.0 * unit * sign.sense * sign.direction
-            yield Stroke("force", span_sign(ARROW, sign.start, tip, unit))
+            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), sign.start, sign.sense * sign.direction, unit)
         elif sign.kind == "shaft":
-            yield Stroke("line", self._ring(sign.start, 2.0 * unit))
-            yield Stroke("counterweight", place_sign(SECTOR, sign.start, sign.direction, 2.0 * unit))
+            yield _ring("line", sign.start, 2.0 * unit)
+            yield _placed("counterweight", SECTOR, sign.start, sign.direction, 2.0 * unit)
         elif sign.end is not None:
             shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
             start, end = self._near_part(sign.start, sign.end)
             yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
         else:
             shape = {"spiral": SPIRAL, "ring": RING}.get(sign.kind, COUPLE)
-            level = np.broadcast_to([[1.0], [0.0]], sign.start.shape)
             kind = "force" if sign.kind == "couple" else "spring"
-            yield Stroke(kind, place_sign(shape, sign.start, level, 1.6 * unit, sign.sense))
+            size, senses = 1.6 * unit, np.unique(sign.sense)
+            if senses.size == 1:
+                yield _ring(kind, sign.start, size, shape, senses[0])
+            else:
+                yield Stroke(kind, place_sign(shape, sign.start, np.array([[1.0], [0.0]]), size, sign.sense))
 
     def _near_part(self, start, end):
         """Ends of a line, in poses; if it leads far away, those of a part beside the machine."""
@@ -286,7 +303,7 @@ class Shape:
             point = np.array([float(np.ravel(part)[0]) for part in place])
             foot = _nearest_on(_outline(self.corners[name])[1], point)
             if np.hypot(*(foot - point)) > 0.5 * self.unit:
-                yield Stroke("tie", _link_points(pose, name, np.column_stack([point, foot])))
+                yield _on_link("tie", pose, name, np.column_stack([point, foot]))
 
     def grounds(self, loads):
         """Fixed pivots and fixed ends of loads, (2,) each."""
@@ -307,9 +324,16 @@ def _signs(item, pose):
     return item.signs(pose) if hasattr(item, "signs") else ()
 
 
-def _link_points(pose, link, points):
-    """Points (2, K) of a link in all poses, (2, K, N)."""
-    return np.stack([pose.position((link, along, across)) for along, across in points.T], axis=1)
+def _on_link(kind, pose, link, points):
+    """Rigid stroke of points (2, K) of a link."""
+    return RigidStroke(
+        kind, points, pose.position((link, 0.0, 0.0)), pose.as_vector(pose.placement.links[link].direction)
+    )
+
+
+def _ring(kind, place, radius, points=RING, sense=1.0):
+    """A stroke that does not turn, by default a circle."""
+    return _placed(kind, points, place, np.broadcast_to([[1.0], [0.0]], place.shape), radius, sense)
 
 
 def _ends(points):
@@ -382,7 +406,7 @@ def moving_surfaces(solution, pose):
     """Working curves of cams that turn with a link, in the poses of a motion."""
     for body, points in working_curves(solution):
         if body != FRAME:
-            yield Stroke("surface", _link_points(pose, body, points))
+            yield _on_link("surface", pose, body, points)
 
 
 def whole_turn(solution):
@@ -424,7 +448,8 @@ def strokes_by_owner(named, angle):
         found += [(stroke, name) for stroke in (*weights, *load_strokes(solution, angle))]
 
     def same(one, two):
-        (kind, points), (other, others) = two[0], one[0]
-        return kind == other and points.shape == others.shape and np.allclose(points, others, rtol=1e-6, equal_nan=True)
+        points, others = two[0].points, one[0].points
+        alike = two[0].kind == one[0].kind and points.shape == others.shape
+        return alike and np.allclose(points, others, rtol=1e-6, equal_nan=True)
 
     return [(group[0][0], list(dict.fromkeys(name for _, name in group))) for group in grouped(found, same)]

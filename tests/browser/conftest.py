@@ -3,6 +3,7 @@
 import importlib.util
 import os
 import shutil
+from contextlib import ExitStack
 
 import pytest
 
@@ -13,7 +14,7 @@ TOOLS = ("chromium", "chromedriver")
 def missing():
     """What is lacking to run a browser, as a sentence, or ""."""
     lacking = [name for name in TOOLS if shutil.which(name) is None]
-    lacking += [name for name in ("selenium", "bokeh") if importlib.util.find_spec(name) is None]
+    lacking += [name for name in ("selenium", "jinja2") if importlib.util.find_spec(name) is None]
     return f"a browser is needed for these tests; not installed: {', '.join(lacking)}" if lacking else ""
 
 
@@ -38,3 +39,12 @@ def driver():
     found.set_script_timeout(30)
     yield found
     found.quit()
+
+
+@pytest.fixture
+def explored(driver):
+    """Opens explore pages: `explored("pumpjack", "--variant", "weights")`, each with a server that ends with the test."""
+    from support.explored import ExplorePage, explore_server
+
+    with ExitStack() as servers:
+        yield lambda *options, fields="": ExplorePage(driver, servers.enter_context(explore_server(*options)), fields)

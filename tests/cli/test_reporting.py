@@ -10,7 +10,7 @@ from support.reports import words
 
 pytestmark = pytest.mark.slow
 
-pytest.importorskip("bokeh")
+pytest.importorskip("jinja2")
 
 
 def test_the_command_writes_the_page_and_tells_of_it(tmp_path, capsys):

@@ -72,7 +72,7 @@ def _pairs(one, other):
 
 @pytest.mark.slow
 def test_tables_and_pages_have_the_units(tmp_path, capsys):
-    pytest.importorskip("bokeh")
+    pytest.importorskip("jinja2")
     table, page = tmp_path / "x.csv", tmp_path / "x.html"
     printed_by(["run", "yoke_pump", *UNITS, "--csv", table], capsys)
     heads = table.read_text().splitlines()[0]

@@ -279,7 +279,7 @@ def test_run_prints_the_parts(tmp_path, capsys):
 
 @pytest.mark.slow
 def test_a_report_has_the_parts(tmp_path):
-    pytest.importorskip("bokeh")
+    pytest.importorskip("jinja2")
     path = ks.report(case_file(tmp_path, CASE), tmp_path / "saw.html")
     text = path.read_text(encoding="utf-8")
     assert "From forces to parts" in text

@@ -27,13 +27,24 @@ def page(case, variant=None):
     return text, data_of(text)
 
 
-def from_base64(text, kind="<f4"):
-    """Numbers from base64, (N,)."""
-    return np.frombuffer(base64.b64decode(text), dtype=kind)
-
-
 def data_of(text):
-    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1])
+    """The data in a page, with its arrays in place, (N,) each."""
+
+    def read(name):
+        return json.loads(re.search(rf'<script type="application/json" class="{name}">(.*?)</script>', text, re.S)[1])
+
+    arrays = read("arrays")
+
+    def restored(value):
+        if isinstance(value, list):
+            return [restored(item) for item in value]
+        if not isinstance(value, dict):
+            return value
+        if value.keys() == {"array", "kind"}:
+            return np.frombuffer(base64.b64decode(arrays[value["array"]]), dtype=f"<{value['kind']}")
+        return {name: restored(item) for name, item in value.items()}
+
+    return restored(read("data"))
 
 
 def words(text):
@@ -44,7 +55,7 @@ def words(text):
 
 def series(data, name, row):
     """Values of a quantity of a machine in the page's unit, (1 or 2, N)."""
-    return from_base64(data["quantities"][name]["values"][row], "<f8").reshape(-1, data["counts"][row])
+    return data["quantities"][name]["values"][row].reshape(-1, data["counts"][row])
 
 
 def plain(**options):

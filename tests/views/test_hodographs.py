@@ -93,7 +93,7 @@ def test_what_is_refused(saw, call, words):
 
 @pytest.mark.slow
 def test_a_report_shows_them_all(tmp_path):
-    pytest.importorskip("bokeh")
+    pytest.importorskip("jinja2")
     scenes = {name: shipped("sawframe_2r63").variants[name].scene for name in ("plain", "cam-circle")}
     page = ks.report(scenes, tmp_path / "saw.html").read_text(encoding="utf-8")
     figures = [name.split('"')[0] for name in page.split('data-figure="')[1:]]

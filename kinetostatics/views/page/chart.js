@@ -3,10 +3,10 @@
 // (by default the chart's); in the plane `angle` holds the degrees of its points (by default even ones).
 import { element, put, short } from "./svg.js";
 
-const LEFT = 58, RIGHT = 16, TOP = 26, BOTTOM = 38, TICKS = 5;
+const LEFT = 58, RIGHT = 16, TOP = 26, BOTTOM = 38;
+const CLOSEST_TICKS = 42; // pixels
 const AIR = 0.06; // of the range, beyond the curves
 const USED = 0.6; // share of the range below which it shrinks
-const NARROWEST = 45; // pixels between ticks of the plane
 const TURN_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360];
 const CLOSEST = 1e-4; // smallest share of the range that a zoom shows
 const FARTHEST = 20; // pixels from the pointer to a point that is read
@@ -151,9 +151,9 @@ export class Chart {
 
   // Steps of the ticks along both axes.
   steps() {
-    const { across, up, plane, period } = this, step = roundStep(spanOf(up) / TICKS);
-    if (plane) return [Math.max(step, roundStep(NARROWEST / this.scaleX)), step];
-    const turn = TURN_STEPS.find((degrees) => degrees >= spanOf(across) / (TICKS - 0.5));
+    const { across, plane, period } = this, step = roundStep(CLOSEST_TICKS / this.scaleY);
+    if (plane) return [step, step];
+    const turn = TURN_STEPS.find((degrees) => degrees >= spanOf(across) / 4.5);
     return [turn && spanOf(across) < period ? turn : period / 4, step];
   }
 

@@ -1,7 +1,7 @@
 // Requests to the library and their answers, over a socket of the server or the model of a notebook.
-import { restored } from "./arrays.js";
+import { fromBuffers, restored } from "./arrays.js";
 
-const ALIGNMENT = 8, LENGTH_BYTES = 4, KINDS = { f4: Float32Array, f8: Float64Array };
+const ALIGNMENT = 8, LENGTH_BYTES = 4; // as in messages.py
 
 // Header and arrays of a binary message, as `messages.py` frames them.
 function unframed(buffer) {
@@ -9,15 +9,12 @@ function unframed(buffer) {
   const text = new TextDecoder().decode(new Uint8Array(buffer, LENGTH_BYTES, length));
   const [header, lengths] = JSON.parse(text);
   let end = LENGTH_BYTES + length;
-  const places = lengths.map((bytes) => {
-    const place = [end, bytes];
+  const parts = lengths.map((bytes) => {
+    const part = new Uint8Array(buffer, end, bytes);
     end += Math.ceil(bytes / ALIGNMENT) * ALIGNMENT;
-    return place;
+    return part;
   });
-  return restored(header, (number, kind) => {
-    const [start, bytes] = places[number];
-    return new KINDS[kind](buffer, start, bytes / KINDS[kind].BYTES_PER_ELEMENT);
-  });
+  return restored(header, fromBuffers(parts));
 }
 
 // A socket as a transport: `send(request)`; calls `onanswer(answer)` and `onlost()`.
@@ -57,6 +54,9 @@ export class Requests {
   look(kind, fields) {
     if (this.underway === null) this.underway = this.send(kind, fields); else this.next = [kind, fields];
   }
+
+  // Is a look or a drag under way?
+  get busy() { return this.underway !== null; }
 
   send(kind, fields) {
     this.number += 1;

@@ -1,196 +1,322 @@
-// The explore page: the mechanism, its forces and its numbers, all of one state; in a page or a notebook.
-import { Chart } from "./chart.js";
-import { Clock } from "./clock.js";
+// The explore page: the mechanism, its forces and its numbers, all of one state; in a page or in a notebook.
+//
+// For the parts of the page that other modules build, `explore` has:
+//   requests, clock, drawing  the requests to the library, the chosen crank angle, the drawing
+//   state     the state that is asked for: {variant, values, ...}
+//   compared  the state of the reference
+//   known     the last answer to "describe": {parameters, quantities, drive}; null before
+//   shown     the last answer to a look, with its own `state`; null while that state cannot be assembled
+//   names     names of the quantities that are shown
+//   change(state, still)  show another state; `still` while a hand moves something: one step of undo for all of it
+//   drag(fields, still)   the same by a request "drag", whose answer has the new state
+//   focus(path), band(name, area)  bring a parameter into view; a tolerance band in a chart, or null
+//   onknown(f), onchanged(f), onshown(f)  call f(answer or state): after each description, change, answer to a look
 import { Requests } from "./connection.js";
-import { Drawing } from "./drawing.js";
-import { History } from "./history.js";
+import { Curves } from "./curves.js";
+import { History, parsed } from "./history.js";
+import { button, checkbox, made } from "./html.js";
+import { Mechanism } from "./mechanism.js";
 import { Parameters } from "./parameters.js";
 
-const COUNT = 360, FIRST_CHARTS = 3;
-const NOW = "#1f4e79", BEFORE = "#6b7280";
+const COUNT = 360; // crank angles of a period
+const FIRST_CURVES = 3;
+const REMEMBER = 300; // ms between a change and its place in the address
+const LONG_NOTE = 90; // characters of a note that stands open
 
-function made(parent, name, attributes = {}, text = "") {
-  const element = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  if (text) element.textContent = text;
-  parent.append(element);
-  return element;
-}
+// What is compared with another state: without the order of its values.
+const keyOf = ({ values, ...others }) => JSON.stringify([others, Object.entries(values ?? {}).sort()]);
 
 export class Explore {
-  // `transport` sends requests; `address` keeps what is shown, {read(), write(fields)}.
+  // `transport` sends requests; `address` keeps what is shown, {read(), write(fields)}, all texts.
   constructor(root, transport, address) {
-    Object.assign(this, { root, address, charts: new Map(), shown: null, reference: null, known: null });
+    Object.assign(this, { root, address, known: null, shown: null, reference: null, frozen: null, answered: null });
+    Object.assign(this, { moving: false, ready: false, described: null, kept: new Map(), timer: null });
+    this.listeners = { known: [], changed: [], shown: [] };
     this.requests = new Requests(transport);
-    this.requests.onlook = (answer) => this.show(answer);
+    this.requests.onlook = (answer) => this.receive(answer);
     this.requests.onlost = (reason) => this.lost(reason);
+    root.explore = this;
     this.build();
     this.requests.ask("open", { token: address.read().token }, (answer) => this.open(answer));
   }
 
-  build() {
-    this.root.replaceChildren();
-    this.head = made(this.root, "header");
-    this.title = made(this.head, "h1");
-    this.tabs = made(this.head, "div", { class: "tabs", role: "tablist" });
-    this.tools = made(this.head, "div", { class: "tools" });
-    this.undo = this.button("Undo", () => this.move(-1));
-    this.redo = this.button("Redo", () => this.move(1));
-    this.freeze = this.button("Compare with now", () => this.compareWith(this.history.now));
-    this.problem = made(this.root, "p", { class: "problem", role: "status" });
-    const body = made(this.root, "div", { class: "body" });
-    this.machine = made(body, "section", { class: "machine", "aria-label": "mechanism" });
-    this.figures = made(body, "section", { class: "charts", "aria-label": "curves" });
-    this.side = made(body, "section", { class: "numbers", "aria-label": "parameters" });
-    this.below = made(this.root, "section", { class: "below" });
+  onknown(listener) { this.listeners.known.push(listener); }
+
+  onchanged(listener) { this.listeners.changed.push(listener); }
+
+  onshown(listener) { this.listeners.shown.push(listener); }
+
+  tell(kind, item) { this.listeners[kind].forEach((listener) => listener(item)); }
+
+  get state() { return this.history.now; }
+
+  get names() { return this.curves.names; }
+
+  get clock() { return this.mechanism.clock; }
+
+  get drawing() { return this.mechanism.drawing; }
+
+  // Does all that is shown belong to the state that is asked for, and to its reference?
+  get settled() {
+    const { answered, reference } = this, same = (answer, state) => Boolean(answer) && keyOf(answer.state) === keyOf(state);
+    return Boolean(this.known) && !this.moving && same(answered, this.state) && (!reference || same(reference, this.compared))
+      && !this.requests.busy;
   }
 
-  button(text, onclick) {
-    const button = made(this.tools, "button", { type: "button" }, text);
-    button.addEventListener("click", onclick);
-    return button;
+  get compared() {
+    const own = this.variants.find(({ name }) => name === this.state.variant);
+    return this.frozen ? this.frozen.state : { variant: own ? own.reference : this.state.variant, values: {} };
+  }
+
+  build() {
+    this.root.replaceChildren();
+    this.sheet = made(this.root, "div", { class: "sheet" });
+    const head = made(this.sheet, "header");
+    this.title = made(head, "h1");
+    this.tabs = made(head, "div", { class: "tabs", role: "tablist", "aria-label": "variants" });
+    const tools = made(head, "div", { class: "tools" });
+    this.undo = button(tools, "↶ Undo", () => this.move(-1), { title: "Ctrl+Z" });
+    this.redo = button(tools, "↷ Redo", () => this.move(1), { title: "Ctrl+Shift+Z" });
+    this.freeze = button(tools, "Compare with now", () => this.compare(true));
+    this.thaw = button(tools, "Compare with", () => this.compare(false));
+    this.both = checkbox(tools, "reference in the drawing", false, () => this.redraw());
+    this.keeping = made(tools, "div", { class: "keep" });
+    this.problem = made(this.sheet, "p", { class: "problem", role: "alert", hidden: "" });
+    this.notes = made(this.sheet, "div", { class: "notes", role: "status" });
+    const body = made(this.sheet, "div", { class: "body" });
+    this.left = made(body, "section", { class: "machine", "aria-label": "mechanism" });
+    this.mechanism = new Mechanism(this.left, (index) => this.follow(index));
+    this.asking = made(body, "section", { class: "ask", "aria-label": "questions" });
+    const figures = made(body, "section", { class: "curves", "aria-label": "curves" });
+    this.curves = new Curves(figures, {
+      onchosen: () => this.lookAnew(), onchoose: (degrees) => this.clock.choose(degrees / this.clock.step),
+    });
+    this.clock.keys(figures);
+    const side = made(body, "section", { class: "numbers", "aria-label": "parameters" });
+    this.grouping = made(side, "div", { class: "groups" });
+    this.parameters = new Parameters(side, (path, value, still) => this.set(path, value, still));
+    this.root.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  // Ctrl+Z and its like, but in texts that are typed.
+  press(event) {
+    const target = event.composedPath()[0], { key: letter } = event;
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || /^(text|search|textarea)$/.test(target.type)) return;
+    const steps = { z: event.shiftKey ? 1 : -1, y: 1 }[letter.toLowerCase()];
+    if (!steps) return;
+    event.preventDefault();
+    this.move(steps);
   }
 
   open(answer) {
     if (answer.problem) { this.say(answer.problem); return; }
-    this.title.textContent = answer.title;
-    this.variants = answer.variants;
-    for (const { name } of answer.variants) {
-      const tab = made(this.tabs, "button", { type: "button", role: "tab" }, name);
-      tab.addEventListener("click", () => this.change({ variant: name, values: {} }));
-    }
     const kept = this.address.read();
-    this.history = new History(kept.state ? JSON.parse(kept.state) : answer.start);
-    this.names = kept.show ? JSON.parse(kept.show) : null;
-    this.describe();
+    Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
+    this.title.textContent = answer.title;
+    for (const { name } of answer.variants) this.tab(name);
+    this.history = new History({ ...answer.start, ...parsed(kept.state, {}) });
+    this.curves.names = parsed(kept.show, []);
+    this.curves.planes = new Set(parsed(kept.planes, []));
+    this.at = Number(kept.angle) || 0;
+    this.present();
   }
 
-  // Fields and quantities of the machine that is shown, then the machine.
-  describe() {
-    const state = this.history.now;
-    this.requests.ask("describe", { state }, (answer) => {
-      if (answer.problem) { this.say(answer.problem); return; }
+  // Tabs of the variants: each keeps its own numbers.
+  tab(name) {
+    const tab = button(this.tabs, name, () => this.turnTo(name), { role: "tab", "aria-selected": "false" });
+    tab.addEventListener("keydown", (event) => {
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!step) return;
+      const all = [...this.tabs.children], next = all[(all.indexOf(tab) + step + all.length) % all.length];
+      next.focus();
+      next.click();
+      event.preventDefault();
+    });
+  }
+
+  turnTo(variant) {
+    if (variant !== this.state.variant) this.change(this.kept.get(variant) ?? { variant, values: {} });
+  }
+
+  // A parameter's number, SI; null: that of the variant.
+  set(path, value, still) {
+    const { [path]: before, ...values } = this.state.values;
+    const own = this.known.parameters.find((field) => field.path === path)?.value;
+    if (value !== null && value !== own) values[path] = value;
+    this.change({ ...this.state, values }, still);
+  }
+
+  change(state, still = false) {
+    this.history.keep(state, still && this.moving);
+    this.moving = still;
+    this.present();
+  }
+
+  drag(fields, still = true) {
+    this.dragging = still;
+    this.requests.look("drag", { state: this.state, show: this.names, count: COUNT, ...fields });
+  }
+
+  move(steps) {
+    this.moving = false;
+    if (this.history?.move(steps)) this.present();
+  }
+
+  // Show the present state: describe it first if it is of another structure.
+  present() {
+    const { state } = this, structure = keyOf({ ...state, values: {} });
+    this.kept.set(state.variant, state);
+    this.remember();
+    this.tell("changed", state);
+    if (structure === this.described) this.look(); else this.describe(structure);
+  }
+
+  describe(structure) {
+    this.asked = structure;
+    this.requests.ask("describe", { state: { ...this.state, values: {} } }, (answer) => {
+      if (structure !== this.asked) return;
+      if (answer.problem) { this.refuse(answer); return; }
+      this.described = structure;
       this.known = answer;
-      this.describedFor = state.variant;
-      this.names ??= answer.quantities.slice(0, FIRST_CHARTS).map(({ name }) => name);
-      this.parameters = new Parameters(this.side, answer.parameters, (path, value, still) => this.set(path, value, still));
-      for (const [place, tab] of [...this.tabs.children].entries()) {
-        tab.setAttribute("aria-selected", this.variants[place].name === state.variant);
+      if (!this.names.length) this.curves.names = firstCurves(answer.quantities);
+      this.curves.offer(answer.quantities);
+      this.parameters.describe(answer.parameters);
+      for (const tab of this.tabs.children) {
+        const chosen = tab.textContent === this.state.variant;
+        tab.setAttribute("aria-selected", chosen);
+        tab.tabIndex = chosen ? 0 : -1;
       }
+      this.tell("known", answer);
       this.askReference();
       this.look();
     });
   }
 
-  get drawn() { return [...new Set(this.names)]; }
+  look() { this.requests.look("look", { state: this.state, show: this.names, count: COUNT }); }
 
-  set(path, value, still) {
-    const { variant, values } = this.history.now;
-    this.change({ variant, values: { ...values, [path]: value } }, still);
-  }
-
-  // Show another state; `still` while a hand moves a slider or a point: one step of undo for the whole movement.
-  change(state, still = false) {
-    this.history.keep(state, still && this.moving);
-    this.moving = still;
-    if (state.variant === this.describedFor) this.look(); else this.describe();
+  // Other quantities, of the machine and of the reference.
+  lookAnew() {
     this.remember();
-  }
-
-  move(steps) {
-    const state = this.history.move(steps);
-    if (!state) return;
-    if (state.variant === this.describedFor) this.look(); else this.describe();
-    this.remember();
-  }
-
-  remember() {
-    this.undo.disabled = this.history.place === 0;
-    this.redo.disabled = this.history.place === this.history.states.length - 1;
-    this.address.write({ state: JSON.stringify(this.history.now), show: JSON.stringify(this.names) });
-  }
-
-  look() {
-    this.requests.look("look", { state: this.history.now, show: this.drawn, count: COUNT });
-  }
-
-  compareWith(state) {
-    this.compared = state;
     this.askReference();
+    this.look();
+  }
+
+  // The reference is the state shown now, or that of the variant.
+  compare(now) {
+    const time = new Date().toTimeString().slice(0, 5);
+    this.frozen = now ? { state: this.state, label: `${this.state.variant} at ${time}` } : null;
+    this.lookAnew();
   }
 
   askReference() {
-    const own = this.variants.find(({ name }) => name === this.history.now.variant);
-    const state = this.compared ?? { variant: own.reference, values: {} };
-    this.requests.ask("look", { state, show: this.drawn, count: COUNT }, (answer) => {
-      this.reference = answer.problem ? null : answer;
-      if (this.shown) this.redraw();
+    const { compared: state, frozen } = this, label = frozen ? frozen.label : state.variant;
+    this.forgetReference?.();
+    this.thaw.textContent = `Compare with ${frozen ? this.ownReference() : label}`;
+    this.thaw.disabled = !frozen;
+    this.forgetReference = this.requests.ask("look", { state, show: this.names, count: COUNT }, (answer) => {
+      this.reference = answer.problem ? null : { ...answer, label };
+      this.redraw();
     });
   }
 
-  say(text) { this.problem.textContent = text; }
+  ownReference() { return this.variants.find(({ name }) => name === this.state.variant)?.reference ?? ""; }
+
+  receive(answer) {
+    if (answer.kind === "drag" && answer.state) {
+      this.history.keep(answer.state, this.moving);
+      this.moving = this.dragging;
+      this.kept.set(answer.state.variant, answer.state);
+      this.remember();
+      this.tell("changed", answer.state);
+    }
+    this.answered = answer;
+    if (answer.problem) { this.refuse(answer); return; }
+    const first = !this.ready;
+    Object.assign(this, { shown: answer, ready: true });
+    this.say("");
+    this.note(answer.notes);
+    this.redraw();
+    if (first) this.clock.choose(this.at / this.clock.step);
+    this.root.dataset.shown = answer.id;
+    this.tell("shown", answer);
+  }
+
+  // A state without numbers: the last machine stays as a ghost.
+  refuse(answer) {
+    this.shown = null;
+    this.say(answer.problem);
+    this.note([]);
+    this.mechanism.ghost();
+    this.curves.stale();
+    if (this.known) this.showFields(answer.state);
+    this.root.dataset.shown = answer.id;
+    this.tell("shown", answer);
+  }
+
+  showFields(state) {
+    const values = Object.fromEntries(this.known.parameters.map(({ path, value }) => [path, value]));
+    this.parameters.show({ ...values, ...state.values });
+  }
+
+  redraw() {
+    const { shown, reference } = this;
+    this.undo.disabled = this.history.first;
+    this.redo.disabled = this.history.last;
+    if (!shown) return;
+    this.parameters.show(shown.values);
+    this.mechanism.show(shown, this.both.checked ? reference : null, this.moving);
+    this.curves.show(shown, reference);
+    this.follow(this.clock.index);
+  }
+
+  follow(index) {
+    if (!this.shown) return;
+    this.curves.follow(index, this.shown.angle[index % this.shown.angle.length]);
+    if (!this.clock.running) this.remember();
+  }
+
+  focus(path) { this.parameters.focus(path); }
+
+  band(name, area) { this.curves.band(name, area); }
+
+  // The address reopens what is shown.
+  remember() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.address.write({
+      state: JSON.stringify(this.state), show: JSON.stringify(this.names), planes: JSON.stringify([...this.curves.planes]),
+      angle: String(this.clock.degrees), compared: JSON.stringify(this.frozen),
+    }), REMEMBER);
+  }
+
+  say(text) {
+    this.problem.textContent = text;
+    this.problem.hidden = !text;
+  }
+
+  // Hints of the library; long ones are folded.
+  note(texts) {
+    const joined = texts.join("\n");
+    if (joined === this.noted) return;
+    this.noted = joined;
+    this.notes.replaceChildren();
+    for (const text of texts) {
+      if (text.length <= LONG_NOTE) { made(this.notes, "p", {}, text); continue; }
+      const details = made(this.notes, "details");
+      made(details, "summary", {}, `${text.slice(0, LONG_NOTE)} …`);
+      made(details, "p", {}, text);
+    }
+  }
 
   lost(reason) {
     this.root.classList.add("lost");
     this.say(`${reason || "The library has ended."} Start it again, and load this page anew.`);
   }
-
-  show(answer) {
-    this.root.dataset.shown = answer.id;
-    if (answer.problem) {
-      this.say(answer.problem);
-      this.drawing?.setGhost(true);
-      this.charts.forEach((chart) => chart.stale(true));
-      return;
-    }
-    this.say(answer.notes.join(" "));
-    this.shown = answer;
-    this.redraw();
-  }
-
-  redraw() {
-    const { shown } = this;
-    this.parameters.show(shown.values);
-    if (this.drawing) {
-      this.drawing.update(shown.drawing);
-    } else {
-      const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-      this.machine.append(svg);
-      this.drawing = new Drawing(svg, shown.drawing);
-      this.clock = new Clock(made(this.machine, "div", { class: "clock" }), { count: shown.angle.length, period: shown.period, way: shown.way });
-      this.clock.listen((index) => this.follow(index));
-    }
-    this.drawing.setGhost(false);
-    for (const name of this.names) this.chart(name);
-    this.follow(this.clock.index);
-  }
-
-  chart(name) {
-    const item = this.shown.quantities[name];
-    if (!item) return;
-    if (!this.charts.has(name)) {
-      const chart = new Chart(made(this.figures, "div", { class: "chart" }), { period: this.shown.period });
-      chart.onchoose = (degrees) => this.clock.choose(degrees);
-      this.charts.set(name, chart);
-    }
-    const curves = [];
-    const before = this.reference?.quantities[name];
-    if (before) curves.push({ name: "reference", colour: BEFORE, dash: "5 3", thin: true, x: this.reference.angle, y: size(before, item.factor) });
-    curves.push({ name: "now", colour: NOW, x: this.shown.angle, y: size(item, item.factor) });
-    this.charts.get(name).set(curves, { label: item.vector ? `|${item.label}|` : item.label, unit: item.unit });
-    this.charts.get(name).stale(false);
-  }
-
-  follow(index) {
-    this.drawing.show(index);
-    this.charts.forEach((chart) => chart.cursor(this.shown.angle[index % this.shown.angle.length]));
-  }
 }
 
-// Values of a quantity in its shown unit; of a vector its size.
-function size(item, factor) {
-  const { values } = item;
-  if (!item.vector) return values.map((value) => factor * value);
-  const count = values.length / 2;
-  return Float64Array.from({ length: count }, (_, place) => factor * Math.hypot(values[place], values[count + place]));
+// The torque, and the reactions of the first and the last joint.
+function firstCurves(quantities) {
+  const reactions = quantities.filter(({ kind }) => kind === "reaction").map(({ name }) => name);
+  const torque = quantities.filter(({ kind }) => kind === "force").map(({ name }) => name).slice(0, 1);
+  return [...new Set([...torque, ...reactions.slice(-1), ...reactions, ...quantities.map(({ name }) => name)])]
+    .slice(0, FIRST_CURVES);
 }

@@ -1,10 +1,14 @@
-// States that were shown: undo, redo, and the address that reopens one.
+// States that were shown: undo, redo, and the fields of an address that reopen one.
 export class History {
   constructor(first) { Object.assign(this, { states: [first], place: 0 }); }
 
   get now() { return this.states[this.place]; }
 
-  // Keep a state after the present one; with `still`, in place of the present one (a drag that goes on).
+  get first() { return this.place === 0; }
+
+  get last() { return this.place === this.states.length - 1; }
+
+  // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on).
   keep(state, still = false) {
     if (JSON.stringify(state) === JSON.stringify(this.now)) return;
     this.states.length = this.place + 1;
@@ -18,6 +22,11 @@ export class History {
     this.place = wanted;
     return this.now;
   }
+}
+
+// Value of a JSON text of an address; `otherwise` if it has none.
+export function parsed(text, otherwise = null) {
+  try { return JSON.parse(text) ?? otherwise; } catch { return otherwise; }
 }
 
 // Fields of the address's fragment, "#token=...&state=...", as texts.

@@ -1,131 +1,128 @@
-"use strict";
-// Bokeh's figures: put in their places, their cursors led by the crank angle, other quantities shown when chosen.
-(() => {
-  const items = JSON.parse(document.getElementById("plots").textContent);
-  const { data } = report;
-  const period = Math.max(...data.counts) * data.step;
-  const figures = {}, seen = new Set(), hidden = new Set();
-  const vector = document.getElementById("hodograph"), other = document.getElementById("explore");
-  const model = (name) => figures[name] && figures[name].model;
-  const renderer = (name, wanted) => model(name).renderers.find((item) => item.name === wanted);
-  const closed = (values) => [...values, values[0]];
-  const named = (row, length) => Array(length).fill(data.drawings[row].name);
-  const title = (item, text) => `${text} [${item.unit || "1"}]`;
+// The page of a report: drawings, figures and values that follow the crank angle.
+import { fromBase64, restored, shown } from "./arrays.js";
+import { Chart } from "./chart.js";
+import { Clock } from "./clock.js";
+import { Drawing } from "./drawing.js";
 
-  async function draw(place) {
-    const name = place.dataset.figure;
-    if (name in figures) return;
-    figures[name] = null;
-    const manager = await Bokeh.embed.embed_item(items[name], place.id);
-    const [view] = manager.roots;
-    if (matchMedia("(pointer: coarse)").matches) view.model.toolbar.tools.forEach((tool) => { tool.active = false; }); // a finger scrolls
-    figures[name] = { view, place, model: view.model, cursor: view.model.center.find((item) => item.name === "cursor") };
-    hidden.forEach((row) => appear(figures[name], row, false));
-    if (name === "hodograph") chooseVector();
-    if (name === "explore") chooseQuantity();
-    follow(report.index);
-  }
+const TALLEST_BESIDE_WIDE = 300;
 
-  // Figures in sight are drawn first and follow the crank as it turns; others when there is time.
-  const places = [...document.querySelectorAll("[data-figure]")];
-  const watch = new IntersectionObserver((entries) => entries.forEach(({ isIntersecting, target }) => {
-    seen[isIntersecting ? "add" : "delete"](target);
-    if (isIntersecting) draw(target).then(() => follow(report.index));
-  }), { rootMargin: "200px" });
-  places.forEach((place) => watch.observe(place));
-  const spare = window.requestIdleCallback || ((work) => setTimeout(work, 50));
-  async function rest() {
-    const next = places.find((place) => !(place.dataset.figure in figures));
-    if (!next) { document.documentElement.dataset.figures = Math.round(performance.now()); return; }
-    await draw(next);
-    spare(rest);
-  }
-  spare(rest);
+// Arrays of equal length, of which a typed array holds one after another.
+const parted = (all, length) => Array.from({ length: length ? all.length / length : 0 },
+  (_, part) => all.subarray(part * length, (part + 1) * length));
 
-  function follow(index) {
-    for (const [name, figure] of Object.entries(figures)) {
-      if (!figure || !seen.has(figure.place)) continue;
-      if (figure.cursor) figure.cursor.location = index * data.step;
-      tips(name, index);
+class Report {
+  constructor(root) {
+    const all = (selector) => [...root.querySelectorAll(selector)];
+    const json = (name) => JSON.parse(root.querySelector(`script.${name}`).textContent);
+    this.data = restored(json("data"), fromBase64(json("arrays")));
+    const { counts, step, way, start } = this.data;
+    Object.assign(this, { root, all, hidden: new Set(), period: Math.max(...counts) * step });
+    for (const item of Object.values(this.data.quantities)) {
+      item.parts = item.values.map((values, row) => values && parted(values, counts[row]));
     }
-  }
-
-  // Points of a hodograph; that of a chosen vector has a name of its own, others that of their quantity.
-  function tips(name, index) {
-    data.counts.forEach((count, row) => {
-      const tip = renderer(name, `tip ${row}`);
-      if (!tip) return;
-      const parts = report.values(name === "hodograph" ? vector.value : name, row);
-      tip.data_source.data = parts ? { x: [parts[0][index % count]], y: [parts[1][index % count]] } : { x: [], y: [] };
+    this.cells = all("td[data-quantity]");
+    this.drawings = all(".panel svg").map((svg, row) => this.drawing(svg, row));
+    this.charts = Object.fromEntries(all("[data-figure]").map((place) => [place.dataset.figure, this.chart(place)]));
+    this.choices();
+    this.clock = new Clock(root, { count: Math.max(...counts), step, way });
+    this.clock.turnTo(start);
+    this.clock.follow((index) => this.show(index));
+    this.clock.keys(root);
+    const choose = (degrees) => this.clock.choose(degrees / step);
+    for (const chart of Object.values(this.charts)) chart.onchoose = choose;
+    window.addEventListener("beforeprint", () => {
+      for (const part of all("details[data-printed]")) part.open = true;
     });
+    document.documentElement.dataset.ready = Math.round(performance.now());
   }
 
-  // What grows without bound is left out, so that all else can be seen.
-  const inSight = ({ sight }, size) => sight === null || size <= sight;
+  drawing(svg, row) {
+    const drawing = new Drawing(svg, svg.closest(".wide") ? { tallest: TALLEST_BESIDE_WIDE } : {});
+    drawing.update(this.data.drawings[row]);
+    return drawing;
+  }
 
-  function chooseVector() {
-    if (!model("hodograph")) return; // it is drawn as chosen
-    const item = data.quantities[vector.value];
-    data.counts.forEach((_, row) => {
-      const line = renderer("hodograph", `line ${row}`), curve = report.curve(vector.value, row);
-      const seen = curve && curve.parts[0].map((x, place) => inSight(item, Math.hypot(x, curve.parts[1][place])));
-      const [x, y] = curve ? curve.parts.map((part) => closed(part.map((value, place) => seen[place] ? value : NaN))) : [[], []];
-      line.data_source.data = { angle: curve ? closed(curve.angle) : [], x, y, variant: named(row, x.length) };
+  chart(place) {
+    const item = this.data.figures[place.dataset.figure], { plane = false, height } = item;
+    const chart = new Chart(place, { plane, height, period: this.period });
+    this.fill(chart, item);
+    return chart;
+  }
+
+  // Degrees and parts of a quantity over the period of a machine, with extremes, kinks and jumps between its angles.
+  curve(name, row) {
+    const { step, between, quantities } = this.data, parts = quantities[name].parts[row];
+    if (!parts) return null;
+    const degrees = [...parts[0].keys()].map((place) => place * step).concat(...between[row]);
+    const order = [...degrees.keys()].sort((one, other) => degrees[one] - degrees[other]);
+    const sorted = (values) => order.map((place) => values[place]);
+    const others = parted(quantities[name].between[row], between[row].length);
+    return { angle: sorted(degrees), parts: parts.map((part, place) => sorted([...part, ...(others[place] || [])])) };
+  }
+
+  // Curves of all machines that are not hidden, of a quantity or of what the figure holds itself.
+  fill(chart, { quantity, curves, label, unit }) {
+    const { drawings, counts, step, colours, dashes, quantities } = this.data, item = quantity && quantities[quantity];
+    const found = drawings.map(({ name }, row) => {
+      const curve = quantity ? this.points(chart, quantity, row) : curves[row];
+      const style = { colour: colours[row % colours.length], dash: dashes[row % dashes.length] };
+      return curve && !this.hidden.has(row) && { name, period: counts[row] * step, ...style, ...curve };
     });
-    [model("hodograph").below[0], model("hodograph").left[0]].forEach((axis, place) => {
-      axis.axis_label.text = title(item, `${item.label}, ${"xy"[place]}`);
-    });
-    tips("hodograph", report.index);
+    const size = item && item.vector && !chart.plane;
+    chart.shown = { quantity, curves, label, unit };
+    chart.set(found.filter(Boolean), item
+      ? { label: size ? `|${item.label}|` : item.label, unit: item.unit, sight: item.sight } : { label, unit });
   }
 
-  function chooseQuantity() {
-    if (!model("explore")) return;
-    const item = data.quantities[other.value];
-    data.counts.forEach((count, row) => {
-      const curve = report.curve(other.value, row), angle = [], value = [];
-      if (curve) {
-        const sizes = curve.parts.length > 1 ? curve.parts[0].map((x, place) => Math.hypot(x, curve.parts[1][place])) : curve.parts[0];
-        const shown = sizes.map((size) => inSight(item, Math.abs(size)) ? size : NaN);
-        for (let start = 0; start < period; start += count * data.step) {
-          angle.push(...curve.angle.map((own) => start + own));
-          value.push(...shown);
-        }
-        angle.push(period);
-        value.push(shown[0]);
-      }
-      renderer("explore", `line ${row}`).data_source.data = { angle, value, variant: named(row, angle.length) };
-    });
-    model("explore").left[0].axis_label.text = title(item, item.vector ? `|${item.label}|` : item.label);
+  points(chart, quantity, row) {
+    const curve = this.curve(quantity, row);
+    if (!curve) return null;
+    const { angle, parts: [x, y] } = curve;
+    if (chart.plane) return { x, y, angle };
+    return { x: angle, y: y ? x.map((part, place) => Math.hypot(part, y[place])) : x };
   }
 
-  function appear(figure, row, wanted) {
-    for (const item of figure.model.renderers) if ([`line ${row}`, `tip ${row}`].includes(item.name)) item.visible = wanted;
-  }
-
-  document.querySelectorAll("[data-machine]").forEach((key) => key.addEventListener("click", () => {
-    const row = Number(key.dataset.machine), wanted = hidden.has(row);
-    hidden[wanted ? "delete" : "add"](row);
-    document.querySelectorAll(`[data-machine="${row}"]`).forEach((other) => other.setAttribute("aria-pressed", wanted));
-    Object.values(figures).forEach((figure) => figure && appear(figure, row, wanted));
-  }));
-  if (vector) vector.addEventListener("change", chooseVector);
-  other.addEventListener("change", chooseQuantity);
-  report.followers.push(follow);
-
-  // On paper figures stand as drawings of lines, as wide as their place there, and the case file stands open.
-  window.addEventListener("beforeprint", () => {
-    document.querySelectorAll("details[data-printed]").forEach((part) => { part.open = true; });
-    for (const figure of Object.values(figures).filter(Boolean)) {
-      if (figure.cursor) figure.cursor.location = report.index * data.step;
-      const drawn = figure.view.export("svg", false).canvas;
-      const [width, height] = ["width", "height"].map((name) => parseFloat(drawn.getAttribute(name)));
-      const parent = figure.place.parentElement;
-      const printed = parent.querySelector(".printed") || parent.appendChild(document.createElement("div"));
-      printed.className = "printed";
-      printed.replaceChildren(drawn);
-      drawn.setAttribute("viewBox", `0 0 ${width} ${height}`);
-      ["width", "height"].forEach((name) => drawn.removeAttribute(name));
+  choices() {
+    for (const key of this.all("[data-machine]")) {
+      key.addEventListener("click", () => this.appear(Number(key.dataset.machine)));
     }
-  });
-  Object.assign(report, { figures });
-})();
+    for (const box of this.all("select[data-chooses]")) {
+      const chart = this.charts[box.dataset.chooses], choose = () => this.fill(chart, { quantity: box.value });
+      box.addEventListener("change", choose);
+      choose(); // a browser may keep what was chosen before
+    }
+    for (const box of this.all("[data-arrow]")) {
+      const hide = (drawing) => drawing.hide(box.dataset.arrow, !box.checked);
+      box.addEventListener("change", () => this.drawings.forEach(hide));
+    }
+    const longer = this.root.querySelector(".longer");
+    longer.addEventListener("change", () => this.drawings.forEach((drawing) => drawing.lengthen(Number(longer.value))));
+  }
+
+  // Hide a machine in all figures, or show it again.
+  appear(row) {
+    const wanted = this.hidden.has(row);
+    this.hidden[wanted ? "delete" : "add"](row);
+    for (const key of this.all(`[data-machine="${row}"]`)) key.setAttribute("aria-pressed", wanted);
+    for (const chart of Object.values(this.charts)) this.fill(chart, chart.shown);
+  }
+
+  reading({ quantity, row }, chosen) {
+    const { decimals, vector, parts: { [row]: parts } } = this.data.quantities[quantity];
+    const index = chosen % this.data.counts[row];
+    if (!parts) return "";
+    if (!vector) return shown(parts[0][index], decimals);
+    const [x, y] = parts.map((part) => part[index]), size = Math.hypot(x, y), way = Math.atan2(y, x) * 180 / Math.PI;
+    return shown(size, decimals) + (size > 0 && Number.isFinite(size) ? ` ∠ ${shown(way, 1)}°` : "");
+  }
+
+  show(index) {
+    const degrees = index * this.data.step;
+    this.root.querySelector(".chosen").textContent = degrees;
+    for (const drawing of this.drawings) drawing.show(index);
+    for (const cell of this.cells) cell.textContent = this.reading(cell.dataset, index);
+    for (const chart of Object.values(this.charts)) chart.cursor(degrees);
+  }
+}
+
+document.body.report = new Report(document.body);

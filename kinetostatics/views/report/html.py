@@ -3,6 +3,7 @@
 A browser without a window prints the PDF.
 """
 
+import base64
 import datetime as dt
 import math
 import os
@@ -13,6 +14,7 @@ import tempfile
 import warnings
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +22,16 @@ from ...cycle.losses import lose
 from ...errors import FileError, MissingLibraryError
 from ...numbers.formatting import pretty_unit
 from ...version import __version__
-from .. import page as page_files
 from ..canvas import display_unit, grouped
-from . import figures, tables
-from .movement import movements, to_base64
+from ..movement import movements
+from ..page import bundle, source, split_arrays
+from . import tables
 from .tables import readings
+
+COLOURS = ("#1f4e79", "#b5482f", "#3a7d44", "#8a6d1d", "#6b4a8f", "#3f6f7f", "#8c3b5e", "#5a5a5a")
+"""Quiet colours of the machines, in their order."""
+DASHES = ("", "6", "2 4 6 4", "2 4", "6 4 2 4", "", "6", "2 4 6 4")
+"""Dash arrays of the machines; they distinguish curves in print without colour."""
 
 QUANTITY_GROUPS = {
     "Forces and torques": ("force", "reaction", "friction", "whole"),
@@ -38,6 +45,17 @@ WIDE_RATIO = 1.7
 """Width over height above which two drawings fill a line."""
 
 
+def require_jinja():
+    """Import Jinja2; an error with the install command if it is missing."""
+    try:
+        import jinja2
+    except ImportError:
+        raise MissingLibraryError(
+            'a report needs Jinja2, which is not installed: pip install "kinetostatics[report]"'
+        ) from None
+    return jinja2
+
+
 def page(subject, progress=lambda text: None):
     """HTML text of the page of a subject, with the warnings of its computation.
 
@@ -47,12 +65,14 @@ def page(subject, progress=lambda text: None):
         warnings.simplefilter("always")
         found = _contents(subject, progress)
     progress("page")
-    from jinja2 import Environment, FunctionLoader, StrictUndefined
-
-    made = Environment(
-        loader=FunctionLoader(_text), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    jinja2 = require_jinja()
+    made = jinja2.Environment(
+        loader=jinja2.FunctionLoader(_template),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
-    # in order: Bokeh's models stand before what refers to them
     made.policies["json.dumps_kwargs"] = {"separators": (",", ":")}
     return made.get_template("page.html.j2").render(found, remarks=[*remarks(caught), *found["reasons"]])
 
@@ -64,7 +84,6 @@ def remarks(caught):
 
 def _contents(subject, progress):
     """Contents of the template."""
-    from bokeh.resources import Resources
     from markupsafe import Markup
 
     progress("movement")
@@ -86,7 +105,9 @@ def _contents(subject, progress):
     calculations = tables.calculations(subject, turning["start"])
     progress("figures")
     drawn = _figures(subject, values, runs)
-    boxes = [item["box"] for item in moving["drawings"]]
+    boxes = [item["box"] for item in moving]
+    data = {**turning, "drawings": moving, "quantities": values, "figures": drawn["items"]}
+    header, arrays = split_arrays(data | {"colours": COLOURS, "dashes": DASHES})
     return {
         "subject": subject,
         "tables": contents,
@@ -98,18 +119,18 @@ def _contents(subject, progress):
         },
         "values": values,
         "vectors": [name for name, item in values.items() if item["vector"]],
-        "reactions": list(dict.fromkeys(name for item in moving["drawings"] for name in item["arrows"])),
-        "colours": figures.COLOURS,
-        "dashes": figures.SVG_DASHES,
+        "reactions": list(dict.fromkeys(name for item in moving for name in item["arrows"])),
+        "colours": COLOURS,
+        "dashes": DASHES,
         "together": _same_torque_text(subject),
         "wide": any(right - left > WIDE_RATIO * (high - low) for left, low, right, high in boxes),
         "published": _published(subject),
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": dt.date.today().isoformat(),
-        "data": {**moving, **turning, "quantities": values, "colours": figures.COLOURS},
-        "style": Markup(_text("style.css")),
-        "scripts": [Markup(_text(f"{name}.js")) for name in ("drawing", "clock", "report")],
-        "library": Markup("\n".join(Resources(mode="inline", components=["bokeh"]).js_raw[:1])),
+        "data": header,
+        "arrays": [base64.b64encode(array.tobytes()).decode("ascii") for array in arrays],
+        "style": Markup(source("style.css") + source("report.css")),
+        "script": Markup(bundle("report.js")),
         "speeds": [
             {"rpm": mean * 30.0 / math.pi, "turn": 2.0 * math.pi / mean if mean else math.inf}
             for mean in (float(np.mean(np.abs(machine.scene.crank_speed))) for machine in subject.machines.values())
@@ -144,59 +165,50 @@ def _turning(subject):
     machines = list(subject.machines.values())
     first = subject.reference.solution
     torque = np.abs(first.balancing_torque)
-    solutions = [machine.solution for machine in machines]
-    forces = [np.hypot(*solution.reaction(joint)) for solution in solutions for joint in solution.reactions]
-    unit = display_unit("N", forces)
     return {
         "step": subject.reference.step,
         "counts": [machine.solution.crank_angle.size for machine in machines],
-        "between": [to_base64(np.degrees(machine.between.crank_angle), "<f8") for machine in machines],
+        "between": [np.degrees(machine.between.crank_angle) for machine in machines],
         "start": int(np.nanargmax(torque)) if np.isfinite(torque).any() else 0,
         "way": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
-        "forceUnit": {"factor": unit[0], "unit": pretty_unit(unit[1])},
     }
 
 
 def _figures(subject, values, runs):
-    """Figures as Bokeh's JSON items, and their places in the page."""
-    from bokeh.embed import json_item
-
-    solutions = subject.solutions
+    """Figures by name: quantity or curves, height in pixels, and whether in the plane; the choices of the page."""
     joint = "O" if "O" in values else next((name for name, item in values.items() if item["kind"] == "reaction"), None)
     first = next((name for name, item in values.items() if item["kind"] == "slider" and "accel" in name), None)
-    made = {"torque": figures.over_turn(solutions, "balancing_torque", 320)}
+    explored = first or "balancing_torque"
+    made: dict[str, dict[str, Any]] = {"torque": {"quantity": "balancing_torque", "height": 320}}
     if joint:
-        made["hodograph"] = figures.hodograph(solutions, joint)
-    made["explore"] = figures.over_turn(solutions, first or "balancing_torque", 420)
+        made["hodograph"] = {"quantity": joint, "height": 420, "plane": True}
+    made["explore"] = {"quantity": explored, "height": 420}
     for name, item in values.items():
         if item["kind"] == "reaction":
-            made[f"reaction {name}"] = figures.over_turn(solutions, name, 230)
+            made[f"reaction {name}"] = {"quantity": name, "height": 230}
         if item["kind"] == "ground":
-            made[name] = figures.hodograph(solutions, name, 300)
-    if any(lose(solution) for solution in solutions.values()) and "friction_loss" in values:
-        made["loss"] = figures.over_turn(solutions, "friction_loss", 260)
+            made[name] = {"quantity": name, "height": 300, "plane": True}
+    if any(lose(solution) for solution in subject.solutions.values()) and "friction_loss" in values:
+        made["loss"] = {"quantity": "friction_loss", "height": 260}
     if runs:
-        names = {name: row for row, name in enumerate(subject.machines)}
-        angles = {name: np.degrees(run.crank_angle) for name, run in runs.items()}
-        factor, unit = display_unit("rad/s", [run.speed for run in runs.values()])
-        speeds = {names[name]: (angles[name], factor * run.speed) for name, run in runs.items()}
-        made["speed"] = figures.curves_over(list(names), speeds, f"crank speed [{pretty_unit(unit)}]", 260)
         ratios = {name: run.motor.transmission if run.motor else 1.0 for name, run in runs.items()}
         torques = {name: ratios[name] * run.motor_torque for name, run in runs.items()}
-        factor, unit = display_unit("N m", torques.values())
-        drawn = {names[name]: (angles[name], factor * torque) for name, torque in torques.items()}
-        made["motor"] = figures.curves_over(list(names), drawn, f"motor torque [{pretty_unit(unit)}]", 260)
-    return {
-        "items": {name: json_item(plot) for name, plot in made.items()},
-        "places": {name: place for place, name in enumerate(made)},
-        "explored": first or "balancing_torque",
-        "joint": joint,
-    }
+        speeds = {name: run.speed for name, run in runs.items()}
+        for name, found, label, unit in (
+            ("speed", speeds, "crank speed", "rad/s"),
+            ("motor", torques, "motor torque", "N m"),
+        ):
+            factor, shown = display_unit(unit, found.values())
+            curves = [
+                {"x": np.degrees(runs[one].crank_angle), "y": factor * found[one]} if one in runs else None
+                for one in subject.machines
+            ]
+            made[name] = {"curves": curves, "label": label, "unit": pretty_unit(shown), "height": 260}
+    return {"items": made, "explored": explored, "joint": joint}
 
 
-def _text(name):
-    folder = resources.files(__package__) if name.endswith(".j2") else resources.files(page_files)
-    return folder.joinpath(name).read_text(encoding="utf-8")
+def _template(name):
+    return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 BROWSERS = (

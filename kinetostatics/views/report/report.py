@@ -18,7 +18,7 @@ from ...numbers.lazy import cached_property
 from ...numbers.output_units import output_units, shown_in
 from ...solution.scene import Scene
 from ..canvas import angles_between
-from . import figures, html
+from . import html
 
 MAX_ANGLES = 1440
 """Largest number of selectable angles over the period."""
@@ -230,7 +230,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, units=None, comman
     FileError
         A file cannot be written.
     MissingLibraryError
-        Bokeh is not installed, or no browser for the PDF.
+        Jinja2 is not installed, or no browser for the PDF.
     CaseError, ParameterError
         The case, the scenes or the units cannot be used.
 
@@ -258,7 +258,7 @@ def report(what, path, *, variant=None, title=None, pdf=None, units=None, comman
         None if title is None or (isinstance(title, str) and title.strip()) else f"title must be a text, got {title!r}",
     )
     units = None if units is None else output_units(units, "report")
-    figures.require_bokeh()
+    html.require_jinja()
     if pdf is not None:
         html.browser()
     subject = subject_of(case, variant, title, command)

@@ -24,7 +24,6 @@ from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, heading, parse_heading, pretty_unit, round_bound_up
 from ...numbers.output_units import shown_units
 from ..canvas import display_unit, drawn_limit, ordinary_size
-from .movement import to_base64
 
 number = partial(formatting.number, infinity="∞")
 """A number as text in all tables of the report."""
@@ -178,8 +177,8 @@ def readings(machines):
             "vector": quantity.vector,
             "sight": factor * sight if np.isfinite(sight) else None,
             "decimals": decimals(factor * ordinary_size(sizes)),
-            "values": [item if item is None else to_base64(factor * item, "<f8") for item in values],
-            "between": [item if item is None else to_base64(factor * item, "<f8") for item in between],
+            "values": [item if item is None else factor * item for item in values],
+            "between": [item if item is None else factor * item for item in between],
         }
     return found
 

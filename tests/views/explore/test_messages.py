@@ -24,7 +24,11 @@ def answered(answer):
 
 
 def test_an_answer_comes_back_with_its_arrays():
-    values = {"f8": np.linspace(0, 1, 7), "f4": np.arange(3, dtype=np.float32), "turned": np.arange(6.0).reshape(2, 3).T}
+    values = {
+        "f8": np.linspace(0, 1, 7),
+        "f4": np.arange(3, dtype=np.float32),
+        "turned": np.arange(6.0).reshape(2, 3).T,
+    }
     found = answered({"id": 3, "inner": [{"text": 'a "title" <b>', **values}], "number": np.float64(0.1)})
     (inner,) = found["inner"]
     assert (found["id"], found["number"], inner["text"]) == (3, 0.1, 'a "title" <b>')
@@ -34,7 +38,9 @@ def test_an_answer_comes_back_with_its_arrays():
 
 
 def test_what_json_has_no_number_for_is_null_but_in_arrays():
-    found = answered({"nan": np.nan, "inf": -np.inf, "curve": {"of": np.array([np.nan, np.inf])}, "whole": np.arange(2)})
+    found = answered(
+        {"nan": np.nan, "inf": -np.inf, "curve": {"of": np.array([np.nan, np.inf])}, "whole": np.arange(2)}
+    )
     assert (found["nan"], found["inf"]) == (None, None)
     np.testing.assert_array_equal(found["curve"]["of"], [np.nan, np.inf])
     np.testing.assert_array_equal(found["whole"], [0.0, 1.0])

@@ -12,7 +12,7 @@ from support.reports import COMMAND, data_of, page, plain, subject, words
 
 pytestmark = pytest.mark.slow
 
-pytest.importorskip("bokeh")
+pytest.importorskip("jinja2")
 HOSTILE = "</script><script>alert(1)</script> \"quoted\" 'n' & <b>x</b> {{ 7*7 }} $$x$$ @y{0} Säge пила 鋸 שלום"
 
 

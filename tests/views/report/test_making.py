@@ -14,7 +14,7 @@ from support.reports import plain, words
 
 pytestmark = pytest.mark.slow
 
-pytest.importorskip("bokeh")
+pytest.importorskip("jinja2")
 
 
 def test_report_of_scenes_returns_its_path(tmp_path):
@@ -83,6 +83,13 @@ def test_what_fails_leaves_what_was_there(tmp_path, monkeypatch):
 def test_what_is_no_name_of_a_file_is_refused(path, pdf):
     with pytest.raises(ks.ParameterError, match="is no name of a file"):
         ks.report(plain(), path, pdf=pdf)
+
+
+def test_without_jinja_it_is_said_how_to_get_it(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    monkeypatch.setattr(html, "page", lambda *_: pytest.fail("work was begun"))
+    with pytest.raises(ks.MissingLibraryError, match=r'pip install "kinetostatics\[report\]"'):
+        ks.report(plain(), tmp_path / "x.html")
 
 
 def test_letters_that_no_file_can_hold_are_replaced(tmp_path):

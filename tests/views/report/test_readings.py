@@ -14,7 +14,7 @@ from kinetostatics.views.report.report import subject_of
 from kinetostatics.views.report.tables import decimals, ratio_text, readings, table_of_frame, texts_of, with_published
 from support.case_files import shipped
 from support.every import every
-from support.reports import from_base64, near_change_points, plain, series, subject
+from support.reports import near_change_points, plain, series, subject
 
 
 def of(case):
@@ -53,7 +53,7 @@ def test_extremes_stand_between_the_angles():
             for name, item in found.items():
                 if item["values"][row] is not None and name in machine.extremes:
                     parts = [
-                        from_base64(item[key][row], "<f8").reshape(2 if item["vector"] else 1, -1) / item["factor"]
+                        item[key][row].reshape(2 if item["vector"] else 1, -1) / item["factor"]
                         for key in ("values", "between")
                     ]
                     parts = np.concatenate(parts, axis=1)

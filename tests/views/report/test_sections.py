@@ -57,7 +57,7 @@ def test_shares_of_torque_and_support_reaction_stand_for_machines_without_fricti
 
 @pytest.mark.slow
 def test_the_page_has_the_shares():
-    pytest.importorskip("bokeh")
+    pytest.importorskip("jinja2")
     assert "Who causes the peaks" in html.page(subject("sawframe_2r63"))
 
 
@@ -84,7 +84,7 @@ def test_one_machine_is_compared_with_nothing():
     alone = subject_of(plain())
     assert tables.comparisons(alone) == []
     assert "atio" not in tables.glance(alone).note
-    pytest.importorskip("bokeh")
+    pytest.importorskip("jinja2")
     text = html.page(alone).split("application/json")[0]
     assert not re.search(r"machine's name|[Rr]atio of means|data-machine=", text)
 
