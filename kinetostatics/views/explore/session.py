@@ -16,7 +16,7 @@ import numpy as np
 
 from ...casefile.case import Case, load_case
 from ...cycle.rounding import FLOOR, zeroed
-from ...errors import KinetostaticsError, ParameterError
+from ...errors import AssemblyError, KinetostaticsError, ParameterError
 from ...mechanics.quantities import components, largest_term, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
@@ -164,6 +164,8 @@ def is_number(value):
 
 def problem_text(error):
     """Sentence on an error for the page; one that is not the user's is named as a fault of the library."""
+    if isinstance(error, AssemblyError):
+        return f"{error.condition}; change the lengths"
     if isinstance(error, KinetostaticsError):
         return str(error)
     return f"this is a fault of the library, please report it: {type(error).__name__}: {error}"
