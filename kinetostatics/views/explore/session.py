@@ -20,10 +20,10 @@ from ...mechanics.quantities import components, largest_term, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
-from ..canvas import display_unit, ordinary_size
+from ..canvas import display_unit, drawn_limit, ordinary_size
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import answers, fields, keeping, searching
+from . import answers, fields, keeping, running, searching
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -209,7 +209,8 @@ def describe(session, request):
         for name, item in of_scene(scene).items()
         if item.kind in KINDS
     ]
-    return {"parameters": fields.fields(scene), "quantities": quantities}
+    drive = running.motor_of(session, {"variant": session.first} | request["state"])[0] is not None
+    return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
 
 
 def look(session, request):
@@ -240,12 +241,14 @@ def curve(solution, name):
     values = zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
     size = np.hypot(*values) if known.vector else values
     factor, unit = display_unit(known.unit, [size])
+    limit = drawn_limit([np.abs(size)])
     return {
         "label": known.label,
         "unit": pretty_unit(unit),
         "factor": factor,
         "decimals": decimals(factor * ordinary_size([size])),
         "vector": known.vector,
+        "sight": factor * limit if np.isfinite(limit) else None,
         "values": values,
     }
 
@@ -254,6 +257,7 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
+    "running": running.running,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,
     "tolerances": answers.ask_tolerances,
@@ -264,5 +268,5 @@ ANSWERS = {
     "report": keeping.report,
 }
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
-OF_NEWEST: tuple[str, ...] = ("ask", "sensitivities", "tolerances")
+OF_NEWEST: tuple[str, ...] = ("ask", "running", "sensitivities", "tolerances")
 """Kinds of requests whose answers are dropped when a newer state is asked for."""

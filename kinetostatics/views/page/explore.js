@@ -20,6 +20,7 @@ import { Parameters } from "./parameters.js";
 
 const COUNT = 360; // crank angles of a period
 const FIRST_CURVES = 3;
+const REST = 150; // ms without a change, until the motor's speed is asked for
 const REMEMBER = 300; // ms between a change and its place in the address
 const LONG_NOTE = 90; // characters of a note that stands open
 
@@ -37,7 +38,8 @@ export class Explore {
     this.requests.onlost = (reason) => this.lost(reason);
     root.explore = this;
     this.build();
-    this.requests.ask("open", { token: address.read().token }, (answer) => this.open(answer));
+    const { token, state, show } = address.read();
+    this.requests.ask("open", { token, address: { state, show } }, (answer) => this.open(answer));
   }
 
   onknown(listener) { this.listeners.known.push(listener); }
@@ -114,8 +116,8 @@ export class Explore {
     Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
     this.title.textContent = answer.title;
     for (const { name } of answer.variants) this.tab(name);
-    this.history = new History({ ...answer.start, ...parsed(kept.state, {}) });
-    this.curves.names = parsed(kept.show, []);
+    this.history = new History(answer.start);
+    this.curves.chosen = answer.show ?? [];
     this.curves.planes = new Set(parsed(kept.planes, []));
     this.at = Number(kept.angle) || 0;
     this.present();
@@ -178,8 +180,8 @@ export class Explore {
       if (answer.problem) { this.refuse(answer); return; }
       this.described = structure;
       this.known = answer;
-      if (!this.names.length) this.curves.names = firstCurves(answer.quantities);
-      this.curves.offer(answer.quantities);
+      if (!this.curves.chosen.length) this.curves.chosen = firstCurves(answer.quantities);
+      this.curves.offer(answer.quantities, answer.drive);
       this.parameters.describe(answer.parameters);
       for (const tab of this.tabs.children) {
         const chosen = tab.textContent === this.state.variant;
@@ -219,6 +221,21 @@ export class Explore {
     });
   }
 
+  // The motor's speed, once the hand rests.
+  askRunning() {
+    clearTimeout(this.rest);
+    this.forgetRunning?.();
+    if (!this.curves.running) return;
+    this.rest = setTimeout(() => {
+      const found = {}, { state, compared: reference } = this;
+      this.forgetRunning = this.requests.ask("running", { state, reference }, (answer) => {
+        if (answer.more) { found[answer.running] = answer; return; }
+        this.curves.run(found.state, found.reference, found.state ? "" : answer.problem);
+        this.follow(this.clock.index);
+      });
+    }, REST);
+  }
+
   ownReference() { return this.variants.find(({ name }) => name === this.state.variant)?.reference ?? ""; }
 
   receive(answer) {
@@ -232,9 +249,10 @@ export class Explore {
     this.answered = answer;
     if (answer.problem) { this.refuse(answer); return; }
     const first = !this.ready;
+    this.askRunning();
     Object.assign(this, { shown: answer, ready: true });
     this.say("");
-    this.note(answer.notes);
+    this.note([...this.opened.notes, ...answer.notes]);
     this.redraw();
     if (first) this.clock.choose(this.at / this.clock.step);
     this.root.dataset.shown = answer.id;
@@ -271,7 +289,7 @@ export class Explore {
 
   follow(index) {
     if (!this.shown) return;
-    this.curves.follow(index, this.shown.angle[index % this.shown.angle.length]);
+    this.curves.follow(this.shown.angle[index % this.shown.angle.length]);
     if (!this.clock.running) this.remember();
   }
 
@@ -283,7 +301,7 @@ export class Explore {
   remember() {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.address.write({
-      state: JSON.stringify(this.state), show: JSON.stringify(this.names), planes: JSON.stringify([...this.curves.planes]),
+      state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen), planes: JSON.stringify([...this.curves.planes]),
       angle: String(this.clock.degrees), compared: JSON.stringify(this.frozen),
     }), REMEMBER);
   }
