@@ -10,7 +10,9 @@
 //   change(state, still)  show another state; `still` while a hand moves something: one step of undo for all of it
 //   drag(fields, still)   the same by a request "drag", whose answer has the new state
 //   focus(path), band(name, area)  bring a parameter into view; a tolerance band in a chart, or null
-//   onknown(f), onchanged(f), onshown(f)  call f(answer or state): after each description, change, answer to a look
+//   onknown(f), onchanged(f), onshown(f), oncompared(f)  call f(answer or state): after each description, change, answer
+//             to a look, answer to a look of the reference
+import { Ask } from "./ask.js";
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
 import { History, parsed } from "./history.js";
@@ -32,7 +34,7 @@ export class Explore {
   constructor(root, transport, address) {
     Object.assign(this, { root, address, known: null, shown: null, reference: null, frozen: null, answered: null });
     Object.assign(this, { moving: false, ready: false, described: null, kept: new Map(), timer: null });
-    this.listeners = { known: [], changed: [], shown: [] };
+    this.listeners = { known: [], changed: [], shown: [], compared: [] };
     this.requests = new Requests(transport);
     this.requests.onlook = (answer) => this.receive(answer);
     this.requests.onlost = (reason) => this.lost(reason);
@@ -47,6 +49,8 @@ export class Explore {
   onchanged(listener) { this.listeners.changed.push(listener); }
 
   onshown(listener) { this.listeners.shown.push(listener); }
+
+  oncompared(listener) { this.listeners.compared.push(listener); }
 
   tell(kind, item) { this.listeners[kind].forEach((listener) => listener(item)); }
 
@@ -97,6 +101,7 @@ export class Explore {
     const side = made(body, "section", { class: "numbers", "aria-label": "parameters" });
     this.grouping = made(side, "div", { class: "groups" });
     this.parameters = new Parameters(side, (path, value, still) => this.set(path, value, still));
+    this.questions = new Ask(this.asking, this);
     this.root.addEventListener("keydown", (event) => this.press(event));
   }
 
@@ -218,6 +223,7 @@ export class Explore {
     this.forgetReference = this.requests.ask("look", { state, show: this.names, count: COUNT }, (answer) => {
       this.reference = answer.problem ? null : { ...answer, label };
       this.redraw();
+      this.tell("compared", answer);
     });
   }
 
