@@ -15,6 +15,7 @@
 import { Ask } from "./ask.js";
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
+import { Handles } from "./handles.js";
 import { History, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
 import { Mechanism } from "./mechanism.js";
@@ -36,7 +37,7 @@ export class Explore {
     Object.assign(this, { moving: false, ready: false, described: null, kept: new Map(), timer: null });
     this.listeners = { known: [], changed: [], shown: [], compared: [] };
     this.requests = new Requests(transport);
-    this.requests.onlook = (answer) => this.receive(answer);
+    this.requests.onlook = (answer, asked) => this.receive(answer, asked);
     this.requests.onlost = (reason) => this.lost(reason);
     root.explore = this;
     this.build();
@@ -92,6 +93,9 @@ export class Explore {
     const body = made(this.sheet, "div", { class: "body" });
     this.left = made(body, "section", { class: "machine", "aria-label": "mechanism" });
     this.mechanism = new Mechanism(this.left, (index) => this.follow(index));
+    this.handles = new Handles(this.drawing, {
+      ondrag: (wanted) => this.drag(wanted), ondrop: (wanted) => this.drag(wanted, false),
+    });
     this.asking = made(body, "section", { class: "ask", "aria-label": "questions" });
     const figures = made(body, "section", { class: "curves", "aria-label": "curves" });
     this.curves = new Curves(figures, {
@@ -160,8 +164,8 @@ export class Explore {
   }
 
   drag(fields, still = true) {
-    this.dragging = still;
-    this.requests.look("drag", { state: this.state, show: this.names, count: COUNT, ...fields });
+    this.clock.run(false);
+    this.requests.look("drag", { state: this.state, show: this.names, count: COUNT, ...fields, still });
   }
 
   move(steps) {
@@ -188,6 +192,7 @@ export class Explore {
       if (!this.curves.chosen.length) this.curves.chosen = firstCurves(answer.quantities);
       this.curves.offer(answer.quantities, answer.drive);
       this.parameters.describe(answer.parameters);
+      this.handles.describe(answer.parameters);
       for (const tab of this.tabs.children) {
         const chosen = tab.textContent === this.state.variant;
         tab.setAttribute("aria-selected", chosen);
@@ -244,10 +249,10 @@ export class Explore {
 
   ownReference() { return this.variants.find(({ name }) => name === this.state.variant)?.reference ?? ""; }
 
-  receive(answer) {
+  receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
       this.history.keep(answer.state, this.moving);
-      this.moving = this.dragging;
+      this.moving = asked.still;
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);
@@ -289,11 +294,13 @@ export class Explore {
     if (!shown) return;
     this.parameters.show(shown.values);
     this.mechanism.show(shown, this.both.checked ? reference : null, this.moving);
+    this.handles.update(shown.handles, shown.values, shown.snap);
     this.curves.show(shown, reference);
     this.follow(this.clock.index);
   }
 
   follow(index) {
+    this.handles?.show(index);
     if (!this.shown) return;
     this.curves.follow(this.shown.angle[index % this.shown.angle.length]);
     if (!this.clock.running) this.remember();
