@@ -13,6 +13,7 @@
 //   onknown(f), onchanged(f), onshown(f)  call f(answer or state): after each description, change, answer to a look
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
+import { Groups } from "./groups.js";
 import { History, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
 import { Mechanism } from "./mechanism.js";
@@ -114,6 +115,7 @@ export class Explore {
     Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
     this.title.textContent = answer.title;
     for (const { name } of answer.variants) this.tab(name);
+    if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History({ ...answer.start, ...parsed(kept.state, {}) });
     this.curves.names = parsed(kept.show, []);
     this.curves.planes = new Set(parsed(kept.planes, []));
