@@ -219,7 +219,7 @@ def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
     """
     require_tornado()
     checks.require("explore", files.folder_write_problem(folder) if folder is not None else None)
-    what = what if isinstance(what, Case | Scene) else load_case(what)
+    what = what if isinstance(what, Case | Scene | dict) else load_case(what)
     Session(what, variant, folder)  # a wrong variant ends the command before it serves
     handler, terminated = signal.getsignal(signal.SIGTERM), asyncio.Event()
 

@@ -16,6 +16,7 @@ import { Ask } from "./ask.js";
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
 import { Handles } from "./handles.js";
+import { Groups } from "./groups.js";
 import { History, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
 import { Mechanism } from "./mechanism.js";
@@ -125,6 +126,7 @@ export class Explore {
     Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
     this.title.textContent = answer.title;
     for (const { name } of answer.variants) this.tab(name);
+    if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
     this.curves.chosen = answer.show ?? [];
     this.curves.planes = new Set(parsed(kept.planes, []));
