@@ -33,6 +33,9 @@ class Row {
 
   text(value) { return String(Number((value * this.field.factor).toPrecision(DIGITS))); }
 
+  // Ends of its slider, SI.
+  get ends() { return [this.slider.min, this.slider.max].map((end) => Number(end) / this.field.factor); }
+
   get changed() { return this.value !== this.field.value; }
 
   // Its number, SI; what is under the hand stays.
@@ -104,6 +107,8 @@ export class Parameters {
       if (count.textContent !== text) count.textContent = text;
     }
   }
+
+  ends(path) { return this.rows.get(path).ends; }
 
   // Bring a parameter into view, with the focus on its slider.
   focus(path) {
