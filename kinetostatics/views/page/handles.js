@@ -17,7 +17,7 @@ const HINT = "Arrow keys move it by a step, with Shift by ten; Alt moves it with
 
 export class Handles {
   // `ondrag(wanted)` is called at most once a frame while a point moves, `ondrop(wanted)` at its end: {handle, x, y, index,
-  // snap}, the place in m at the crank angle of an index.
+  // snap, step}, the place and the snapping step in m at the crank angle of an index.
   constructor(drawing, { ondrag, ondrop }) {
     Object.assign(this, { drawing, ondrag, ondrop, fields: new Map(), grips: new Map(), values: {}, index: 0, held: null });
     drawing.onview = () => this.show(this.index);
@@ -112,7 +112,8 @@ export class Handles {
     grip.group.focus({ preventScroll: true });
     grip.group.setPointerCapture(event.pointerId);
     const [x, y] = this.at(grip.item), [pointerX, pointerY] = this.under(event);
-    this.held = { grip, x, y, start: [x - pointerX, y - pointerY], index: this.index, pointer: event.pointerId };
+    this.held = { grip, x, y, start: [x - pointerX, y - pointerY], index: this.index, step: this.snap };
+    this.held.pointer = event.pointerId;
     this.layer.classList.add("held");
     grip.group.classList.add("held");
   }
@@ -135,7 +136,7 @@ export class Handles {
     event.preventDefault();
     event.stopPropagation(); // the crank stands
     const [x, y] = this.at(grip.item);
-    this.held ??= { grip, x, y, index: this.index, keys: true };
+    this.held ??= { grip, x, y, index: this.index, step: this.snap, keys: true };
     const times = (event.shiftKey ? 10 : 1) * (event.altKey ? 0.1 : 1) * this.snap;
     this.move(this.held.x + times * step[0], this.held.y + times * step[1], !event.altKey);
   }
@@ -153,8 +154,8 @@ export class Handles {
 
   // Request of the present place.
   get wanted() {
-    const { grip, x, y, index, snap } = this.held;
-    return { handle: grip.name, x, y, index, snap };
+    const { grip, x, y, index, snap, step } = this.held;
+    return { handle: grip.name, x, y, index, snap, step };
   }
 
   // A cross where the pointer wants the point.
