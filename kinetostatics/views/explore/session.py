@@ -1,7 +1,8 @@
 """Session: what a page or notebook asks of a case or scene, answered without a browser.
 
-A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant. A
-request is a dict with `id` and `kind`; its answer carries the same `id` and the state to which its numbers belong.
+A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant, or
+of its `chain`, the table of a chain that is built on the page (`groups`). A request is a dict with `id` and `kind`; its
+answer carries the same `id` and the state to which its numbers belong.
 """
 
 import json
@@ -23,7 +24,7 @@ from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import answers, fields, keeping, searching
+from . import answers, fields, groups, keeping, searching
 from .handles import dragged, handle_data
 
 MAX_SCENES = 32
@@ -38,11 +39,12 @@ STATE_KEYS = ("variant", "values", "chain")
 
 
 class Session:
-    """Answers to the requests of one page on a case, or on a scene.
+    """Answers to the requests of one page on a case, on a scene, or on a chain that is built on the page.
 
     Parameters
     ----------
-    what : Case, str, path or Scene
+    what : Case, str, path, Scene, or dict
+        A dict is the table of a chain (`groups.template`), from which the page starts.
     variant : str, optional
         Variant shown first.
     folder : path, optional
@@ -50,6 +52,9 @@ class Session:
     """
 
     def __init__(self, what, variant=None, folder=None):
+        self.chain = what if isinstance(what, dict) else None
+        if self.chain is not None:
+            what = groups.scene_of(self.chain)
         if isinstance(what, Scene):
             name = what.mechanism.name
             self.case, self.title, self.source, self.bases = None, name, "", {name: what}
@@ -104,7 +109,7 @@ class Session:
         require_state("state", state)
         name = state.get("variant", self.first)
         checks.require("explore", checks.choice("variant", name, tuple(self.bases)))
-        return self.bases[name]
+        return groups.scene_of(state["chain"]) if "chain" in state else self.bases[name]
 
     def scene(self, state):
         """Scene of a state."""
@@ -169,7 +174,8 @@ def open_page(session, request):
     references = session.case.reference_of if session.case else lambda name: name
     variants = [{"name": name, "reference": references(name)} for name in session.bases]
     found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
-    found["start"] = {"variant": session.first, "values": {}}
+    chain = {} if session.chain is None else {"chain": session.chain}
+    found["start"] = {"variant": session.first, "values": {}, **chain}
     address = request.get("address")
     try:
         return found | kept_in_address(session, address if isinstance(address, dict) else {})
@@ -291,6 +297,8 @@ ANSWERS = {
     "tolerances": answers.ask_tolerances,
     "optimise": searching.answers,
     "cancel": searching.cancel,
+    "groups": groups.answer_groups,
+    "edit": groups.answer_edit,
     "save": keeping.save,
     "python": keeping.python,
     "report": keeping.report,
