@@ -26,7 +26,7 @@ export class Handles {
     this.tip = element("text", drawing.svg, { class: "tip", visibility: "hidden" });
   }
 
-  // Labels and units of the parameters, [{path, label, unit, factor}].
+  // Names and units of the parameters, [{path, group, label, unit, factor}].
   describe(fields) { this.fields = new Map(fields.map((field) => [field.path, field])); }
 
   // New points and values, with the step of lengths, m.
@@ -100,7 +100,7 @@ export class Handles {
     const field = this.fields.get(path), value = this.values[path];
     if (!field || value === undefined) return path;
     const number = Number((value * field.factor).toPrecision(6));
-    return `${field.label} = ${number} ${field.unit}`;
+    return `${field.group} ${field.label} = ${number} ${field.unit}`;
   }
 
   grab(grip, event) {
