@@ -253,15 +253,16 @@ def look(session, request):
 def drag(session, request):
     """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
 
+    `step` is the snapping step, m; the page keeps it while a point is dragged.
     Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
     """
-    state, place = request["state"], [request.get(key) for key in ("x", "y", "index")]
-    if not all(map(is_number, place)):
-        raise ParameterError(f"explore: x, y and index must be numbers, got {checks.shown(place)}")
-    x, y, index = place
+    state, place = request["state"], [request.get(key) for key in ("x", "y", "index", "step")]
+    if not all(map(is_number, place)) or not place[3] > 0:
+        raise ParameterError(f"explore: x, y, index and step must be numbers, got {checks.shown(place)}")
+    x, y, index, step = place
     solution = session.scene(state).solve(count_of(request), on_gap="nan")
     at = float(x), float(y), int(index) % solution.crank_angle.size
-    moved = dragged(solution, request.get("handle"), *at, snap=request.get("snap") is not False)
+    moved = dragged(solution, request.get("handle"), *at, request.get("snap") is not False, step)
     own = session.base(state).parameters
     values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
     new = state | {"values": values}
