@@ -229,7 +229,9 @@ def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
         with listening(lambda: Session(what, variant, folder), port) as (address, gate):
             tell(f"{address}#token={gate.token}")
             if browser:
-                threading.Thread(target=open_browser, args=(f"{address}#token={gate.ticket}", loop), daemon=True).start()
+                threading.Thread(
+                    target=open_browser, args=(f"{address}#token={gate.ticket}", loop), daemon=True
+                ).start()
             await terminated.wait()
 
     try:

@@ -137,7 +137,9 @@ def _unwarned(parts):
 
 def require_state(key, state):
     """Raise `ParameterError` unless this is a state."""
-    checks.require("explore", None if isinstance(state, dict) else f"{key} must be an object, got {checks.shown(state)}")
+    checks.require(
+        "explore", None if isinstance(state, dict) else f"{key} must be an object, got {checks.shown(state)}"
+    )
     wrong = [checks.choice(f"key of {key}", name, STATE_KEYS) for name in state]
     variant, values = state.get("variant", ""), state.get("values", {})
     wrong += [] if isinstance(variant, str) else [f"variant must be a text, got {checks.shown(variant)}"]
@@ -217,9 +219,7 @@ def look(session, request):
     scene = session.scene(request["state"])
     count, show = request.get("count", 360), request.get("show", [])
     if type(count) is not int or not 1 <= count <= MAX_COUNT:
-        raise ParameterError(
-            f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}"
-        )
+        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
     require_names(show)
     solution = scene.solve(count)
     known = of_scene(scene)
