@@ -5,6 +5,7 @@ import textwrap
 from functools import partial
 from typing import Any
 
+from ..casefile.starters import STARTERS
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.formatting import normalise
@@ -15,9 +16,6 @@ from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
-STARTERS = ("crank-slider", "four-bar", "chain")
-"""Mechanisms of the case files to start from."""
-
 WIDTH_NOTE = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
     "wider."
@@ -192,8 +190,9 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
     "explore": (
         ("commands", "explore"),
         "a page in the browser: the moving mechanism, its forces as you drag",
-        CASE,
+        (CASE[0], CASE[1] | {"nargs": "?"}),
         _option("--variant", "NAME", "shown first (the first of the case)"),
+        ("--new", {"choices": STARTERS, "help": "in place of a case: a mechanism to begin with, whose groups change"}),
         _option("--folder", "DIR", "the only folder into which the page saves (the present one)", _text, default="."),
         _option("--port", "N", "port of the page on this machine (a free one)", int, default=0),
         ("--no-browser", {"action": "store_true", "help": "print the address only"}),

@@ -20,7 +20,7 @@ from ...casefile.case import Case, load_case
 from ...errors import MissingLibraryError, ParameterError
 from ...numbers import checks, files
 from ...solution.scene import Scene
-from ..page import bundle
+from ..page import bundle, source
 from .conversation import Conversation
 from .messages import framed, parsed
 from .session import Session
@@ -169,8 +169,8 @@ def application(gate, session_of_page, hosts):
 
 
 def style():
-    here = resources.files("kinetostatics.views.page")
-    return "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "explore.css"))
+    """Style of the page, all of it within the element of the class `explore`."""
+    return ".explore {\n" + source("style.css").replace(":root", "&") + "}\n" + source("explore.css")
 
 
 @contextlib.contextmanager
@@ -219,7 +219,7 @@ def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
     """
     require_tornado()
     checks.require("explore", files.folder_write_problem(folder) if folder is not None else None)
-    what = what if isinstance(what, Case | Scene) else load_case(what)
+    what = what if isinstance(what, Case | Scene | dict) else load_case(what)
     Session(what, variant, folder)  # a wrong variant ends the command before it serves
     handler, terminated = signal.getsignal(signal.SIGTERM), asyncio.Event()
 

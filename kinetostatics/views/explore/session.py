@@ -1,7 +1,8 @@
 """Session: what a page or notebook asks of a case or scene, answered without a browser.
 
-A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant. A
-request is a dict with `id` and `kind`; its answer carries the same `id` and the state to which its numbers belong.
+A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant, or
+of its `chain`, the table of a chain that is built on the page (`groups`). A request is a dict with `id` and `kind`; its
+answer carries the same `id` and the state to which its numbers belong.
 """
 
 import json
@@ -23,7 +24,8 @@ from ...solution.scene import Scene
 from ..canvas import display_unit, ordinary_size
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import answers, fields, keeping, searching
+from . import answers, fields, groups, keeping, searching
+from .handles import dragged, handle_data
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -37,11 +39,12 @@ STATE_KEYS = ("variant", "values", "chain")
 
 
 class Session:
-    """Answers to the requests of one page on a case, or on a scene.
+    """Answers to the requests of one page on a case, on a scene, or on a chain that is built on the page.
 
     Parameters
     ----------
-    what : Case, str, path or Scene
+    what : Case, str, path, Scene, or dict
+        A dict is the table of a chain (`groups.template`), from which the page starts.
     variant : str, optional
         Variant shown first.
     folder : path, optional
@@ -49,6 +52,9 @@ class Session:
     """
 
     def __init__(self, what, variant=None, folder=None):
+        self.chain = what if isinstance(what, dict) else None
+        if self.chain is not None:
+            what = groups.scene_of(self.chain)
         if isinstance(what, Scene):
             name = what.mechanism.name
             self.case, self.title, self.source, self.bases = None, name, "", {name: what}
@@ -103,7 +109,7 @@ class Session:
         require_state("state", state)
         name = state.get("variant", self.first)
         checks.require("explore", checks.choice("variant", name, tuple(self.bases)))
-        return self.bases[name]
+        return groups.scene_of(state["chain"]) if "chain" in state else self.bases[name]
 
     def scene(self, state):
         """Scene of a state."""
@@ -168,7 +174,8 @@ def open_page(session, request):
     references = session.case.reference_of if session.case else lambda name: name
     variants = [{"name": name, "reference": references(name)} for name in session.bases]
     found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
-    found["start"] = {"variant": session.first, "values": {}}
+    chain = {} if session.chain is None else {"chain": session.chain}
+    found["start"] = {"variant": session.first, "values": {}, **chain}
     address = request.get("address")
     try:
         return found | kept_in_address(session, address if isinstance(address, dict) else {})
@@ -214,14 +221,20 @@ def describe(session, request):
     return {"parameters": fields.fields(scene), "quantities": quantities}
 
 
+def count_of(request):
+    """Number of crank angles of a request."""
+    count = request.get("count", 360)
+    if type(count) is not int or not 1 <= count <= MAX_COUNT:
+        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
+    return count
+
+
 def look(session, request):
     """The machine of a state over the period: its drawing and the quantities to show."""
     scene = session.scene(request["state"])
-    count, show = request.get("count", 360), request.get("show", [])
-    if type(count) is not int or not 1 <= count <= MAX_COUNT:
-        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
+    show = request.get("show", [])
     require_names(show)
-    solution = scene.solve(count)
+    solution = scene.solve(count_of(request))
     known = of_scene(scene)
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
@@ -230,7 +243,30 @@ def look(session, request):
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, name) for name in dict.fromkeys(show) if name in known},
+        **handle_data(solution),
     }
+
+
+def drag(session, request):
+    """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
+
+    Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
+    """
+    state, place = request["state"], [request.get(key) for key in ("x", "y", "index")]
+    if not all(map(is_number, place)):
+        raise ParameterError(f"explore: x, y and index must be numbers, got {checks.shown(place)}")
+    x, y, index = place
+    solution = session.scene(state).solve(count_of(request), on_gap="nan")
+    at = float(x), float(y), int(index) % solution.crank_angle.size
+    moved = dragged(solution, request.get("handle"), *at, snap=request.get("snap") is not False)
+    own = session.base(state).parameters
+    values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
+    new = state | {"values": values}
+    session.scene(new)
+    try:
+        return {"state": new} | look(session, request | {"state": new})
+    except KinetostaticsError as error:
+        return {"state": new, "problem": str(error)}
 
 
 def curve(solution, name):
@@ -254,11 +290,14 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
+    "drag": drag,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,
     "tolerances": answers.ask_tolerances,
     "optimise": searching.answers,
     "cancel": searching.cancel,
+    "groups": groups.answer_groups,
+    "edit": groups.answer_edit,
     "save": keeping.save,
     "python": keeping.python,
     "report": keeping.report,
