@@ -21,10 +21,10 @@ from ...mechanics.quantities import components, largest_term, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
-from ..canvas import display_unit, ordinary_size
+from ..canvas import display_unit, drawn_limit, ordinary_size
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import answers, fields, groups, keeping, searching
+from . import answers, fields, groups, keeping, running, searching
 from .handles import dragged, handle_data
 
 MAX_SCENES = 32
@@ -218,7 +218,8 @@ def describe(session, request):
         for name, item in of_scene(scene).items()
         if item.kind in KINDS
     ]
-    return {"parameters": fields.fields(scene), "quantities": quantities}
+    drive = running.motor_of(session, {"variant": session.first} | request["state"])[0] is not None
+    return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
 
 
 def count_of(request):
@@ -276,12 +277,14 @@ def curve(solution, name):
     values = zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
     size = np.hypot(*values) if known.vector else values
     factor, unit = display_unit(known.unit, [size])
+    limit = drawn_limit([np.abs(size)])
     return {
         "label": known.label,
         "unit": pretty_unit(unit),
         "factor": factor,
         "decimals": decimals(factor * ordinary_size([size])),
         "vector": known.vector,
+        "sight": factor * limit if np.isfinite(limit) else None,
         "values": values,
     }
 
@@ -290,6 +293,7 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
+    "running": running.running,
     "drag": drag,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,
@@ -303,5 +307,5 @@ ANSWERS = {
     "report": keeping.report,
 }
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
-OF_NEWEST: tuple[str, ...] = ("ask", "sensitivities", "tolerances")
+OF_NEWEST: tuple[str, ...] = ("ask", "running", "sensitivities", "tolerances")
 """Kinds of requests whose answers are dropped when a newer state is asked for."""

@@ -18,18 +18,20 @@ const HINT = "Arrow keys move it by a step, with Shift by ten; Alt moves it with
 export class Handles {
   // `ondrag(wanted)` is called at most once a frame while a point moves, `ondrop(wanted)` at its end: {handle, x, y, index,
   // snap}, the place in m at the crank angle of an index.
-  // `fields` are those of the parameters, by path: {label, unit, factor}.
-  constructor(drawing, fields = new Map()) {
-    Object.assign(this, { drawing, fields, items: [], grips: new Map(), values: {}, index: 0, held: null, asked: null });
-    Object.assign(this, { snap: 0, ondrag: () => {}, ondrop: () => {} });
+  constructor(drawing, { ondrag, ondrop }) {
+    Object.assign(this, { drawing, ondrag, ondrop, fields: new Map(), grips: new Map(), values: {}, index: 0, held: null });
+    drawing.onview = () => this.show(this.index);
     this.layer = element("g", drawing.svg, { class: "handles" });
     this.mark = element("path", this.layer, { class: "target", d: "M-9 0H9M0 -9V9", visibility: "hidden" });
     this.tip = element("text", drawing.svg, { class: "tip", visibility: "hidden" });
   }
 
+  // Labels and units of the parameters, [{path, label, unit, factor}].
+  describe(fields) { this.fields = new Map(fields.map((field) => [field.path, field])); }
+
   // New points and values, with the step of lengths, m.
   update(items, values, snap) {
-    Object.assign(this, { items, values, snap });
+    Object.assign(this, { values, snap });
     const names = new Set(items.map(({ name }) => name));
     for (const [name, grip] of this.grips) {
       if (names.has(name)) continue;

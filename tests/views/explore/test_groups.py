@@ -260,9 +260,9 @@ HOSTILE = {
     "list": ([], "a chain must be a table"),
     "none": (None, "a chain must be a table"),
     "deep": (deep(100), "nested more than 20 deep"),
-    "groups": (with_groups([PIN] * 1_000_000), "groups has 1000000 parts; a page takes at most 40"),
-    "values": (with_groups([{"kind": "slider", "x": [1] * 1_000_000}]), "has over 4000 values"),
-    "text": ({"name": "n" * 1_000_000}, "name has 1000000 letters"),
+    "groups": (with_groups([PIN] * 100_000), "groups has 100000 parts; a page takes at most 40"),
+    "values": (with_groups([{"kind": "slider", "x": [1] * 100_000}]), "has over 4000 values"),
+    "text": ({"name": "n" * 100_000}, "name has 100000 letters"),
     "key": ({"k" * 1000: 1}, "must be a key"),
     "nan": ({"crank_speed": float("nan")}, "crank_speed must be a finite number"),
     "integer": ({"crank_speed": 10**400}, "crank_speed must be a finite number"),
@@ -459,8 +459,8 @@ def test_a_broken_chain_and_an_action_without_a_place_end_in_words():
 def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     session = Session(groups.template(kind), folder=tmp_path)
 
-    def answer(name, **fields):
-        found = session.answer({"id": 1, "kind": name, **fields})
+    def answer(kind, **fields):
+        found = session.answer({"id": 1, "kind": kind, **fields})
         assert "problem" not in found
         return found
 
@@ -468,11 +468,11 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     assert state["chain"] == groups.template(kind)
     action = {"do": "add", "at": ["groups"], "kind": "dyad"}
     state = answer("edit", state=state | {"values": {"crank_speed": 5.0}}, action=action)["state"]
-    assert "length1" in [field["path"] for field in answer("describe", state=state)["parameters"]]
+    assert "dyad1.mass" in [field["path"] for field in answer("describe", state=state)["parameters"]]
     looked = answer("look", state=state | {"values": {"dyad1.mass": 2.0}}, show=["balancing_torque"], count=24)
     assert looked["values"]["dyad1.mass"] == 2.0
-    assert answer("save", state=looked["state"], name="mine")["saved"] == "mine.toml"
-    again = list(ks.load_case(tmp_path / "mine.toml").variants.values())[-1].scene
+    assert answer("save", state=looked["state"], name=kind)["saved"] == f"{kind}.toml"
+    again = list(ks.load_case(tmp_path / f"{kind}.toml").variants.values())[-1].scene
     assert_same(session.scene(looked["state"]), again)
     python = answer("python", state=looked["state"])["text"]
     names = {}
@@ -484,10 +484,10 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
 
 def test_a_hostile_chain_in_a_state_ends_in_a_message():
     session = Session(groups.template("four-bar"))
-    for raw, words in HOSTILE.values():
-        found = session.answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
-        assert words in found["problem"] or "library" not in found["problem"]
-        assert len(found["problem"]) < 4000
+    for name, (raw, words) in HOSTILE.items():
+        if name not in ("object", "numbers as keys"):  # no JSON
+            found = session.answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
+            assert words in found["problem"]
 
 
 # A chain of many actions is the same from a file
