@@ -122,10 +122,10 @@ class Session:
         return self._scenes[key]
 
     def reference(self, state):
-        """Solution of the state of the reference, kept with its extremes until another one is asked for."""
+        """The `Reference` of a state, kept until another one is asked for."""
         scene = self.scene(state)
         if self._reference[0] is not scene:
-            self._reference = scene, scene.solve(answers.COUNT)
+            self._reference = scene, answers.Reference(scene.solve(answers.COUNT))
         return self._reference[1]
 
 
