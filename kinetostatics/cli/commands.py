@@ -298,8 +298,7 @@ def explore(options):
         options.folder or ".",
         options.port,
         browser=not options.no_browser,
-        tell=lambda address: print(f"{address}
-Ctrl-C ends the page", flush=True),
+        tell=lambda address: print(f"{address}\nCtrl-C ends the page", flush=True),
     )
 
 

@@ -308,7 +308,7 @@ def test_fields_have_the_texts_of_the_schema():
     (length, *_) = fields(groups.MODELS["groups"]["slider"], {})
     assert length == {
         "key": "coupler_length",
-        "text": "From the joint `on` to `pin`.",
+        "text": 'From the joint "on" to "pin".',
         "required": True,
         "unit": "m",
         "form": "text",
@@ -431,7 +431,7 @@ def test_parts_show_the_numbers_of_the_sliders():
 def test_a_page_asks_for_parts_and_actions():
     state = state_of("four-bar")
     parts = groups.answer_groups(None, {"state": state})["parts"]
-    assert [part["title"] for part in parts] == ["crank", "gravity", "1 rocker", "1 torque", "2 force"]
+    assert [part["title"] for part in parts] == ["crank", "1 rocker", "gravity", "1 torque", "2 force"]
     found = groups.answer_edit(None, {"state": state, "action": {"do": "add", "at": ["groups"], "kind": "slider"}})
     assert len(found["state"]["chain"]["groups"]) == 2
     removal = {"do": "remove", "at": ["groups", 0]}
