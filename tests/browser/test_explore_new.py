@@ -77,7 +77,7 @@ def page(driver, address):
 
 @pytest.mark.timeout(120)
 def test_a_group_is_added_changed_by_a_slider_removed_and_comes_back_by_undo(page):
-    page.wait_for("crank", "gravity", "1 rocker", "1 torque", "2 force")
+    page.wait_for("crank", "gravity", "1 rocker B", "1 torque", "2 force")
     page.add("slider")
     page.wait_for("2 slider C")
     before = page.values("balancing_torque")
@@ -101,14 +101,14 @@ def test_a_group_is_added_changed_by_a_slider_removed_and_comes_back_by_undo(pag
 
 @pytest.mark.timeout(120)
 def test_a_wrong_text_is_told_beside_its_field_and_changes_nothing(page):
-    page.wait_for("1 rocker")
+    page.wait_for("1 rocker B")
     state = page.state
-    page.type("1 rocker", "rocker length", "long <b>")
-    fault = page.field("1 rocker", "rocker length").find_element(By.CSS_SELECTOR, ".fault")
+    page.type("1 rocker B", "rocker length", "long <b>")
+    fault = page.field("1 rocker B", "rocker length").find_element(By.CSS_SELECTOR, ".fault")
     page.wait(lambda: "groups[1].rocker_length must be text of a number" in fault.text)
     assert "long <b>" in fault.text
     assert page.state == state
-    page.type("1 rocker", "rocker length", "320 mm")
+    page.type("1 rocker B", "rocker length", "320 mm")
     page.wait(lambda: page.state["chain"]["groups"][0]["rocker_length"] == "320 mm")
     page.wait(lambda: not any(item.text for item in page.all(".groups .fault")))
     assert page.severe() == []
@@ -129,7 +129,7 @@ def test_a_group_that_carries_others_is_removed_with_them_on_request(page):
 
 @pytest.mark.timeout(120)
 def test_a_load_that_the_machine_cannot_take_is_refused_beside_the_list(page):
-    page.wait_for("1 rocker")
+    page.wait_for("1 rocker B")
     page.add("spring")
     page.wait(lambda: "four-bar has no slider" in page.find(".groups .fault").text)
     assert page.severe() == []

@@ -360,7 +360,7 @@ def state_after(state, action):
 def parts_of(state):
     """Parts of the chain of a state, each with its place, title and the fields of its form, and kinds to add."""
     raw, _ = with_values(state["chain"], state.get("values", {}))
-    mechanism = read(raw).scene.mechanism
+    table, mechanism = read(raw).table, read(raw).scene.mechanism
     places: list[list[Any]] = [[], *(["groups", number] for number in range(len(raw["groups"])))]
     places += [["gravity"]] if "gravity" in raw else []
     places += [["loads", number] for number in range(len(raw.get("loads", ())))]
@@ -373,7 +373,7 @@ def parts_of(state):
             entries = [item for item in entries if item["key"] in proposals.friction_keys(at[1], mechanism)]
         entries = [item | {"value": text_of(_value(owner[key], item["key"]))} for item in entries]
         found.append(
-            {"at": at, "title": _title(raw, at), "about": plain(about(model)) if at else "", "fields": entries}
+            {"at": at, "title": _title(table, at), "about": plain(about(model)) if at else "", "fields": entries}
         )
     kinds = [
         {"at": [name], "kind": kind, "about": plain(about(model))}
@@ -418,14 +418,15 @@ def _key(keys, place):
     return ".".join(key for key in inner if isinstance(key, str))
 
 
-def _title(raw, at):
+def _title(table, at):
     """Title of a part: "2 dyad D"."""
     match at:
         case []:
             return "crank"
         case ["groups" | "loads" as name, number]:
-            part = raw[name][number]
-            return " ".join(filter(None, (str(number + 1), part["kind"], part.get("pin", part.get("name", "")))))
+            part = getattr(table, name)[number]
+            joint = getattr(part, "pin", getattr(part, "name", ""))
+            return " ".join(filter(None, (str(number + 1), part.kind, joint)))
         case ["friction", joint]:
             return f"friction at {joint}"
     return at[0]

@@ -12,6 +12,8 @@ from ...machine.group import FRAME
 
 ANGLES = 72
 """Crank angles at which the way of a joint is computed."""
+MM_DECIMALS = 6
+"""Decimals of proposed lengths in mm."""
 MIN_CHANGE = 1e-6
 """Least change of the distance of two joints for a dyad, over the distance."""
 SCALE = 0.1
@@ -36,7 +38,9 @@ def proposed_group(kind, mechanism):
     (x, y), r = way.centre, way.radius
     pin, pivot = {"pin": way.free_name("B")}, {"pivot_name": way.free_pivot}
     on = {"on": way.joint}
-    level = {"guide_angle": "0 deg", "guide_offset": _mm(y)}
+    turned = 90 * sum(way.joint in group.hangs_on for group in mechanism.groups if group.guides)
+    offset = y * np.cos(np.radians(turned)) - x * np.sin(np.radians(turned))
+    level = {"guide_angle": f"{turned % 360} deg", "guide_offset": _mm(offset)}
     match kind:
         case "slider":
             return {"coupler_length": _mm(4 * r), **level, **on, **pin, "slider": MASS}
@@ -231,7 +235,7 @@ def _middle(values):
 
 
 def _mm(length):
-    return f"{1e3 * length:.4g} mm"
+    return f"{round(1e3 * length, MM_DECIMALS) or 0.0:.4g} mm"
 
 
 def _point(x, y):

@@ -131,9 +131,8 @@ class Part {
       input.placeholder = field.default;
       input.spellcheck = false;
     }
-    if (field.unit) made(label, "span", { class: "unit" }, field.unit);
     const fault = made(label, "span", { class: "fault", role: "alert" });
-    made(label, "small", { class: "help" }, field.text);
+    made(label, "small", { class: "help" }, field.unit ? `${field.text} [${field.unit}]` : field.text);
     input.addEventListener("change", () => this.change());
     this.inputs.set(field.key, { input, fault, value: field.value });
   }
