@@ -83,8 +83,8 @@ def optimise(
     engine : "numpy" or "compiled"
         "compiled" saves time in long studies; a loop with many parameters compiles slowly.
     progress : bool or function
-        Whether a bar shows the steps of the search. A function is called after each step with its design: `.values` by
-        path, `.goal`, and `.missed`, the excess over the worst limit relative to its size, 0 if all limits are kept.
+        Whether a bar shows the steps of the search. A function is called after each step with the design there: its
+        `.values` by path, its `.goal`, and `.missed`, the relative excess over the worst limit.
 
     Returns
     -------

@@ -5,7 +5,7 @@ The table comes row by row, so that a server can answer a drag between two rows.
 
 from collections.abc import Iterator
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class QuantityRow(NamedTuple):
 class FigureRow(NamedTuple):
     """A figure of the whole period, SI, beside that of the reference; `ratio` is reference / value, as of `ks.compare`.
 
-    `problem` says why there is no value.
+    `problem` is the reason if there is no value.
     """
 
     label: str
@@ -176,7 +176,7 @@ def sensitivities(scene, text) -> Sensitivities:
     >>> [(row.path, round(row.share, 3)) for row in found.rows[:4]]
     [('crank_speed', 2.0), ('crank_length', 2.164), ('slider.mass', 1.0), ('coupler_length', -0.164)]
     """
-    output = parse_output(text, scene)
+    output: Any = parse_output(text, scene)
     fixed = paths_without_derivative(scene.places, scene.mechanism)
     own = {path: value for path, value in scene.parameters.items() if isinstance(value, float) and path not in fixed}
     bounds = {path: (value - abs(value) - 1.0, value + abs(value) + 1.0) for path, value in own.items()}

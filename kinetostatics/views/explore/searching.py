@@ -18,6 +18,7 @@ import traceback
 import warnings
 from typing import Any, NamedTuple
 
+from ...design.constraints import parse_output
 from ...design.optimisation import optimise
 from ...design.search import LIMIT_TOLERANCE
 from ...errors import KinetostaticsError
@@ -28,7 +29,7 @@ from ..canvas import display_unit
 REPORT_INTERVAL = 0.1
 """Least time between two reports of the process, s."""
 END_TIME = 5.0
-"""Time in which a process must end when it is told to, s; then it is killed."""
+"""Time in which a cancelled process must end, s; then it is killed."""
 NICENESS = 10
 """Lower priority of the process, so that drags are answered first."""
 GOALS = ("minimise", "maximise")
@@ -58,8 +59,8 @@ class SearchTask(NamedTuple):
 class Search:
     """A running search.
 
-    Messages are dicts, each with one of these: "step" with the number of steps so far and the best design so far,
-    "values" with the result, "problem" with a sentence, or "cancelled".
+    Messages are dicts. Those with "step" have the number of steps and the best design so far. The last one has the
+    "values" of the result, a "problem" as a sentence, or "cancelled".
     """
 
     def __init__(self, task: SearchTask):
@@ -147,6 +148,7 @@ class _Reporter:
 
     def __init__(self, task, send):
         self.task, self.send, self.count, self.best, self.sent = task, send, 0, None, 0.0
+        _, self.unit = parse_heading(parse_output(task.output, task.scene).column)
 
     def __call__(self, step):
         self.count += 1
@@ -157,7 +159,9 @@ class _Reporter:
         if time.monotonic() - self.sent >= REPORT_INTERVAL:
             self.sent, best = time.monotonic(), self.best[1]
             kept = best.missed <= LIMIT_TOLERANCE
-            self.send({"step": self.count, "goal": best.goal, "best": best.values, "kept": kept})
+            factor, unit = display_unit(self.unit, [[best.goal]])
+            goal = {"goal": number(factor * best.goal), "unit": pretty_unit(unit)}
+            self.send({"step": self.count, "best": best.values, "kept": kept} | goal)
 
 
 def work(given):

@@ -20,7 +20,7 @@ from ...casefile.case import Case, load_case
 from ...errors import MissingLibraryError, ParameterError
 from ...numbers import checks, files
 from ...solution.scene import Scene
-from ..page import bundle
+from ..page import bundle, source
 from .conversation import Conversation
 from .messages import framed, parsed
 from .session import Session
@@ -169,8 +169,8 @@ def application(gate, session_of_page, hosts):
 
 
 def style():
-    here = resources.files("kinetostatics.views.page")
-    return "\n".join(here.joinpath(name).read_text(encoding="utf-8") for name in ("style.css", "explore.css"))
+    """Style of the page, all of it within the element of the class `explore`."""
+    return ".explore {\n" + source("style.css").replace(":root", "&") + "}\n" + source("explore.css")
 
 
 @contextlib.contextmanager
@@ -229,7 +229,9 @@ def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
         with listening(lambda: Session(what, variant, folder), port) as (address, gate):
             tell(f"{address}#token={gate.token}")
             if browser:
-                threading.Thread(target=open_browser, args=(f"{address}#token={gate.ticket}", loop), daemon=True).start()
+                threading.Thread(
+                    target=open_browser, args=(f"{address}#token={gate.ticket}", loop), daemon=True
+                ).start()
             await terminated.wait()
 
     try:

@@ -25,6 +25,7 @@ from ..canvas import display_unit, ordinary_size
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
 from . import answers, fields, groups, keeping, searching
+from .handles import dragged, handle_data
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -220,14 +221,20 @@ def describe(session, request):
     return {"parameters": fields.fields(scene), "quantities": quantities}
 
 
+def count_of(request):
+    """Number of crank angles of a request."""
+    count = request.get("count", 360)
+    if type(count) is not int or not 1 <= count <= MAX_COUNT:
+        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
+    return count
+
+
 def look(session, request):
     """The machine of a state over the period: its drawing and the quantities to show."""
     scene = session.scene(request["state"])
-    count, show = request.get("count", 360), request.get("show", [])
-    if type(count) is not int or not 1 <= count <= MAX_COUNT:
-        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
+    show = request.get("show", [])
     require_names(show)
-    solution = scene.solve(count)
+    solution = scene.solve(count_of(request))
     known = of_scene(scene)
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
@@ -236,7 +243,30 @@ def look(session, request):
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, name) for name in dict.fromkeys(show) if name in known},
+        **handle_data(solution),
     }
+
+
+def drag(session, request):
+    """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
+
+    Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
+    """
+    state, place = request["state"], [request.get(key) for key in ("x", "y", "index")]
+    if not all(map(is_number, place)):
+        raise ParameterError(f"explore: x, y and index must be numbers, got {checks.shown(place)}")
+    x, y, index = place
+    solution = session.scene(state).solve(count_of(request), on_gap="nan")
+    at = float(x), float(y), int(index) % solution.crank_angle.size
+    moved = dragged(solution, request.get("handle"), *at, snap=request.get("snap") is not False)
+    own = session.base(state).parameters
+    values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
+    new = state | {"values": values}
+    session.scene(new)
+    try:
+        return {"state": new} | look(session, request | {"state": new})
+    except KinetostaticsError as error:
+        return {"state": new, "problem": str(error)}
 
 
 def curve(solution, name):
@@ -260,6 +290,7 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
+    "drag": drag,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,
     "tolerances": answers.ask_tolerances,

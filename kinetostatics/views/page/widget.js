@@ -1,21 +1,15 @@
 // The explore page in a notebook: the widget's model carries requests and answers, and keeps the state.
-import { restored } from "./arrays.js";
+import { fromBuffers, restored } from "./arrays.js";
 import { Explore } from "./explore.js";
-
-const KINDS = { f4: Float32Array, f8: Float64Array };
 
 // The model as a transport of one of the pages that show it.
 class Kernel {
   constructor(model) {
     Object.assign(this, { model, page: `${Date.now()}-${Math.random()}` });
     this.receive = ({ page, answer }, buffers) => {
-      if (page !== this.page) return;
-      this.onanswer(restored(answer, (number, kind) => {
-        const { buffer, byteOffset, byteLength } = buffers[number];
-        return new KINDS[kind](buffer.slice(byteOffset, byteOffset + byteLength));
-      }));
+      if (page === this.page) this.onanswer(restored(answer, fromBuffers(buffers)));
     };
-    this.end = () => this.onlost("The kernel has gone. Start it, and run this cell again.");
+    this.end = () => this.onlost("The kernel has ended.");
     model.on("msg:custom", this.receive);
     model.on("comm_live_update comm:close", this.end);
   }
@@ -32,7 +26,8 @@ class Kernel {
 function render({ model, el }) {
   const root = document.createElement("div");
   root.className = "explore";
-  root.dataset.lmSuppressShortcuts = "true"; // keys belong to the page, not to the notebook
+  // keys belong to the page: of the element that has the focus, JupyterLab asks whether they are shortcuts
+  root.addEventListener("focusin", ({ target }) => target.setAttribute("data-lm-suppress-shortcuts", ""));
   el.append(root);
   const kernel = new Kernel(model);
   const address = {
@@ -45,7 +40,7 @@ function render({ model, el }) {
   const explore = new Explore(root, kernel, address);
   const follow = () => {
     const state = model.get("state");
-    if (JSON.stringify(state) !== JSON.stringify(explore.history.now)) explore.change(state);
+    if (explore.history && JSON.stringify(state) !== JSON.stringify(explore.history.now)) explore.change(state);
   };
   model.on("change:state", follow);
   return () => {
