@@ -100,6 +100,7 @@ from .sweeps.sweeps import sweep as sweep
 from .sweeps.tolerance import Tolerances as Tolerances
 from .sweeps.tolerance import tolerances as tolerances
 from .views import plots as plots
+from .views.explore.widget import explore as explore
 from .views.report.report import report as report
 
 __version__: str

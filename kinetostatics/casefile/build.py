@@ -65,7 +65,7 @@ def places_by_path(table, prefix="", label="") -> dict[str, NumberPlace]:
                 if getattr(part, str(place.steps[0])) is not None
             }
         else:
-            path, meant = f"{prefix}{names.get(name, name)}{label}", _unit_or_rule(field)
+            path, meant = f"{prefix}{names.get(name, name)}{label}", unit_or_rule(field)
             if isinstance(value, tables.Table):
                 inner = places_by_path(value, f"{path}.")
             elif hasattr(meant, "numbers"):
@@ -99,7 +99,7 @@ def _file_of(table):
     return next((name for name in found if name is not None), None)
 
 
-def _unit_or_rule(field):
+def unit_or_rule(field):
     """SI unit of a field, or the rule of its numbers, from its annotation; None for other fields."""
     candidates = [field.metadata, *(getattr(part, "__metadata__", ()) for part in typing.get_args(field.annotation))]
     found = (item for metadata in candidates for item in metadata if isinstance(item, str) or hasattr(item, "numbers"))
@@ -285,7 +285,7 @@ def _read(path, part, table, keys):
             raise CaseError(path, [str(error)]) from None
     period = part.period or TURN
     if isinstance(part, tables.ValuesTable):
-        unit = _unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
+        unit = unit_or_rule(type(value_at(table, keys[:-1])).model_fields[keys[-1]])
         return Table.from_csv(path, unit, part.area, period, part.slider, part.over, part.zero, part.sense)
     return Table.from_csv(path, period=period)
 

@@ -74,17 +74,22 @@ def read_toml(path):
         raise CaseError(path, [f"is not TOML: {error}"]) from None
     except RecursionError:
         raw = None
-    level: list[Any] = [raw]
-    for _ in range(MAX_DEPTH if raw is not None else 0):
+    if raw is None or is_deeper(raw, MAX_DEPTH):
+        raise CaseError(path, [f"has tables or lists nested more than {MAX_DEPTH} deep"])
+    return path, raw
+
+
+def is_deeper(item, depth):
+    """Whether tables and lists in a table are nested deeper than this."""
+    level: list[Any] = [item]
+    for _ in range(depth):
         level = [
             inner
             for outer in level
             for inner in (outer.values() if isinstance(outer, dict) else outer)
             if isinstance(inner, dict | list)
         ]
-    if level:  # no table, or a deeper one
-        raise CaseError(path, [f"has tables or lists nested more than {MAX_DEPTH} deep"])
-    return path, raw
+    return bool(level)
 
 
 def require(path, *problems):

@@ -285,6 +285,25 @@ def report(options):
         print(f"wrote {options.pdf}")
 
 
+def explore(options):
+    from ..views.explore.server import serve
+
+    checks.require("--folder", files.folder_write_problem(options.folder) if options.folder else None)
+    subject = options.case
+    if options.new:
+        from ..views.explore.groups import template
+
+        subject = template(options.new)
+    serve(
+        subject,
+        options.variant,
+        options.folder or ".",
+        options.port,
+        browser=not options.no_browser,
+        tell=lambda address: print(f"{address}\nCtrl-C ends the page", flush=True),
+    )
+
+
 def drive(options):
     from ..casefile.variant import run_under_motors
     from ..drive.savings import energy_table, running_table

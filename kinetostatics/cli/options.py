@@ -5,6 +5,7 @@ import textwrap
 from functools import partial
 from typing import Any
 
+from ..casefile.starters import STARTERS
 from ..errors import ParameterError
 from ..numbers import checks
 from ..numbers.formatting import normalise
@@ -15,8 +16,8 @@ from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
-STARTERS = ("crank-slider", "four-bar", "chain")
-"""Mechanisms of the case files to start from."""
+MAX_PORT = 65535
+"""Largest number of a port."""
 
 WIDTH_NOTE = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
@@ -30,6 +31,7 @@ EXAMPLES = {
     "explain": 'kinetostatics explain sawframe_2r63 --angle "39.3 deg" --quantity O',
     "drive": 'kinetostatics drive sawframe_2r63 --start "90 deg"',
     "plot": "kinetostatics plot compressor --out figures --format svg",
+    "explore": "kinetostatics explore sawframe_2r63",
     "report": "kinetostatics report compressor --out compressor.html",
     "precision": "kinetostatics precision compressor --out precision",
     "sweep": 'kinetostatics sweep sawframe_2r63 --vary "slider.mass=500..700 kg:5" --output "largest O"',
@@ -56,6 +58,12 @@ def _count(text, size=None):
     if problem:
         raise argparse.ArgumentTypeError(problem.removeprefix("it "))
     return count
+
+
+def _port(text):
+    if not (text.isdecimal() and int(text[:9]) <= MAX_PORT):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 0 (a free port) to {MAX_PORT}, got {text!r}")
+    return int(text)
 
 
 def _angle(text):
@@ -186,6 +194,17 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         _option("--out", "FILE", "page to write, .html", _text, required=True),
         _option("--variant", "NAME", "only this variant and the reference"),
         _option("--pdf", "FILE", "also a PDF, printed by an installed browser", _text),
+        UNITS,
+    ),
+    "explore": (
+        ("commands", "explore"),
+        "a page in the browser: the moving mechanism, its forces as you drag",
+        (CASE[0], CASE[1] | {"nargs": "?"}),
+        _option("--variant", "NAME", "shown first (the first of the case)"),
+        ("--new", {"choices": STARTERS, "help": "in place of a case: a mechanism to begin with, whose groups change"}),
+        _option("--folder", "DIR", "the only folder into which the page saves (the one you are in)", _text),
+        _option("--port", "N", "port of the page, which this machine alone reaches (a free one)", _port, default=0),
+        ("--no-browser", {"action": "store_true", "help": "print the address, open no browser"}),
         UNITS,
     ),
     "precision": (

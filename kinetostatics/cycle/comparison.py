@@ -80,7 +80,7 @@ class Comparison:
     @property
     def mean_torque_ratio(self):
         """Ratio of the mean magnitudes of the balancing torque, `mean_torques`."""
-        return _ratio(*self.mean_torques)
+        return ratio(*self.mean_torques)
 
     @property
     def mean_powers(self):
@@ -93,7 +93,7 @@ class Comparison:
 
     def peak_reaction_ratio(self, joint):
         """Ratio of the largest reactions at a joint."""
-        return _ratio(*self.peak_reactions(joint))
+        return ratio(*self.peak_reactions(joint))
 
     @property
     def lost_powers(self):
@@ -103,7 +103,7 @@ class Comparison:
     @property
     def lost_power_ratio(self):
         """Ratio of the mean powers lost."""
-        return _ratio(*self.lost_powers)
+        return ratio(*self.lost_powers)
 
     def cam_force_range(self):
         """Smallest and largest cam force of reference and balanced mechanism, N; NaN for one without a cam."""
@@ -155,14 +155,14 @@ class Comparison:
         rows = [self._row("mean |balancing torque|", TORQUE, self.mean_torques)]
         signed = tuple(solution.mean_torque for solution in self._both)
         if any(signed):
-            rows.append(Row("mean balancing torque", "N m", signed, _ratio(*signed)))
-            rows.append(Row("mean drive power", "W", self.mean_powers, _ratio(*self.mean_powers)))
+            rows.append(Row("mean balancing torque", "N m", signed, ratio(*signed)))
+            rows.append(Row("mean drive power", "W", self.mean_powers, ratio(*self.mean_powers)))
         rows += self._torque_rows()
         if lose(*self._both):
             both = [solution.losses for solution in self._both]
             for name in dict.fromkeys(name for losses in both for name in losses.lost):
                 powers = tuple(losses.lost.get(name, np.nan) for losses in both)
-                rows.append(Row(f"mean power lost, {name}", "W", powers, _ratio(*powers)))
+                rows.append(Row(f"mean power lost, {name}", "W", powers, ratio(*powers)))
             rows.append(Row("mean power lost", "W", self.lost_powers, self.lost_power_ratio))
             rows.append(Row("efficiency", "1", tuple(losses.efficiency for losses in both), np.nan))
         for name in self._force_names:
@@ -243,7 +243,7 @@ class Comparison:
         """Row of a quantity of both mechanisms, 0 where a value is rounding."""
         each = zip(self._both, values, errors, strict=True)
         pair = tuple(float(without_rounding(solution, name, [value], error)[0]) for solution, value, error in each)
-        return Row(label, unit_of(self.reference, name), pair, _ratio(*pair), errors)
+        return Row(label, unit_of(self.reference, name), pair, ratio(*pair), errors)
 
 
 class Row(NamedTuple):
@@ -314,7 +314,7 @@ def _largest(values):
     return np.argmax(np.abs(values))
 
 
-def _ratio(reference, balanced):
+def ratio(reference, balanced):
     """Ratio of two peaks; infinite where the balanced one is rounding, NaN if neither has a value."""
     if abs(balanced) > 1e-12 * abs(reference):
         return reference / balanced

@@ -395,12 +395,15 @@ def extremes_by_name(solution):
     }
     if text := warning(solution, found.values()):
         warnings.warn(text, ConditionWarning, stacklevel=3)
-    bounded, rows = BoundedExtremes(solution, found), {}
-    for name in found:
-        pairs = (bounded.end(name, find) for find in (np.argmin, np.argmax))
-        ends, angles, errors = zip(*pairs, strict=True)
-        ends = without_rounding(solution, name, ends, errors)
-        degrees = np.degrees(zeroed(angles, PLACED))
-        numbers = tuple(float(item) for end in zip(ends, degrees, strict=True) for item in end)
-        rows[name] = ExtremesRow(quantities_of[name], numbers, (errors[0], np.nan, errors[1], np.nan))
-    return rows
+    bounded = BoundedExtremes(solution, found)
+    return {name: extremes_row(bounded, name) for name in found}
+
+
+def extremes_row(bounded, name):
+    """`ExtremesRow` of a quantity of `BoundedExtremes`: 0 where an end is rounding."""
+    solution = bounded.solution
+    ends, angles, errors = zip(*(bounded.end(name, find) for find in (np.argmin, np.argmax)), strict=True)
+    ends = without_rounding(solution, name, ends, errors)
+    degrees = np.degrees(zeroed(angles, PLACED))
+    numbers = tuple(float(item) for end in zip(ends, degrees, strict=True) for item in end)
+    return ExtremesRow(of_scene(solution)[name], numbers, (errors[0], np.nan, errors[1], np.nan))

@@ -5,6 +5,7 @@ the case file, named after it, the variant and the part.
 """
 
 import json
+import os
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,7 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None, refe
     """Write a case file of scenes by the names of their variants; `references` is by default the first one.
 
     A comment precedes them; tables of designs and parts from another case file follow. Raises `ParameterError` for
-    objects without a text in case files, `FileError` if a file cannot be written or a table's file exists already.
+    objects without a text in case files, `FileError` if a file cannot be written or a table's file has another text.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]
@@ -52,12 +53,20 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None, refe
 
 
 def tables(path, scenes) -> dict[Path, str]:
-    """Text of each file with a table of the scenes, by path beside the case file; `FileError` if one exists already."""
+    """Text of each file with a table of the scenes, by path beside the case file; `FileError` if one has another text.
+
+    No table is replaced: an older case file may read it.
+    """
     beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
-    there = [str(file) for file in beside if file.exists()]
+    there = [str(file) for file, text in beside.items() if os.path.lexists(file) and not _has_text(file, text)]
     if there:
         raise FileError(f"{', '.join(there)}: exists already; choose another name of the case file")
     return beside
+
+
+def _has_text(path, text):
+    """Whether a file has this text."""
+    return path.is_file() and path.read_bytes() == text.encode()
 
 
 def table(head, raw) -> str:

@@ -82,8 +82,9 @@ def optimise(
         Crank angles over the period of the loads.
     engine : "numpy" or "compiled"
         "compiled" saves time in long studies; a loop with many parameters compiles slowly.
-    progress : bool
-        Whether a bar shows the steps of the search.
+    progress : bool or function
+        Whether a bar shows the steps of the search. A function is called after each step with the design there: its
+        `.values` by path, its `.goal`, and `.missed`, the relative excess over the worst limit.
 
     Returns
     -------
@@ -181,6 +182,23 @@ class Task(NamedTuple):
         return self.output, *(limit.output for limit in self.limits)
 
 
+class SearchStep(NamedTuple):
+    """Design after a step of a search: numbers by path, output of the goal, excess over the worst limit.
+
+    Numbers are SI; the excess is relative to the limit's size, at the crank angles of the search.
+    """
+
+    values: dict[str, float]
+    goal: float
+    missed: float
+
+
+def _step(problem, goal, limits, values):
+    """`SearchStep` of a design."""
+    value, _ = problem.output(goal.output, values)
+    return SearchStep(problem.numbers(values), float(value), worst_excess(problem, limits, values))
+
+
 def parse_task(scene, minimise, maximise, limits, reference, angles, kept=(), parts=None) -> Task:
     """Task of a search from texts, with the limits `kept` first; an error without a needed reference or angles."""
     if (minimise is None) == (maximise is None):
@@ -243,7 +261,8 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
     # limits by tables over travel are added; for a robust goal they hold for each machine of the spread
     own = (*problem.table_limits, *(goal.output.within_tables() if robust is not None else ()))
     kept = (*limits, *own)
-    with progress_bar(problem, begins, progress) as numbered:
+    reporter = (lambda values: progress(_step(problem, goal, kept, values))) if callable(progress) else progress
+    with progress_bar(problem, begins, reporter) as numbered:
         ends = [search_from(problem, searched, (*plain, *own), start) for start in numbered]
         best = reduce(better, ends)
         if best.missed > MISSED:

@@ -79,19 +79,23 @@ BAR_DELAY = 1.0
 
 
 @contextmanager
-def progress_bar(problem, begins, wanted):
-    """Context in which steps of the searches move a bar; it yields where they begin, which numbers them on the bar."""
+def progress_bar(problem, begins, progress):
+    """Context in which steps of the searches move a bar; it yields where they begin, which numbers them on the bar.
+
+    `progress` is True for the bar, or a function that is called with the numbers of each step instead.
+    """
     from tqdm import tqdm
 
     words = "search {} of " + str(len(begins))
-    with tqdm(desc=words.format(1), unit=" steps", delay=BAR_DELAY, leave=False, disable=not wanted) as bar:
+    hidden = not progress or callable(progress)
+    with tqdm(desc=words.format(1), unit=" steps", delay=BAR_DELAY, leave=False, disable=hidden) as bar:
 
         def numbered():
             for number, begin in enumerate(begins, 1):
                 bar.set_description_str(words.format(number), refresh=False)
                 yield begin
 
-        problem.stepped = lambda *_: bar.update()
+        problem.stepped = progress if callable(progress) else lambda _: bar.update()
         yield numbered()
     problem.stepped = None
 

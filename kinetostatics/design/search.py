@@ -93,7 +93,7 @@ def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
         jac=True,
         constraints=constraints,
         method="SLSQP",
-        callback=problem.stepped,
+        callback=problem.stepped and (lambda unknowns: problem.stepped(turned.values(unknowns))),
         options={"maxiter": MAX_STEPS, "ftol": max(change, goal.roughness)},
     )
     values = restore_limits(problem, limits, np.clip(turned.values(found.x), problem.low, problem.high))

@@ -12,7 +12,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
-from .dimensions import Span, of_fixed_point
+from .dimensions import Span, of_fixed_point, of_point_on_link
 from .group import EMPTY, FRAME, PLANE, POSITION, Bar, Declaration, Group, Output, Part, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
@@ -248,8 +248,7 @@ class Pin(checks.Checked, Group):
     def dimensions(self):
         if self.on == FRAME:
             return of_fixed_point("at", self.name)
-        foot = (self.on, self.at[0], 0.0)
-        return {("at", 0): Span((self.on, 0.0, 0.0), foot), ("at", 1): Span(foot, self.name)}
+        return of_point_on_link("at", (self.on, *self.at), self.name)
 
     @property
     def throws(self):

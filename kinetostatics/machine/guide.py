@@ -150,7 +150,8 @@ class Guide(checks.Checked):
         """Offset from O, and angle at the pin of a slider."""
         x, y = self.direction
         foot = (-self.guide_offset * y, self.guide_offset * x)
-        return {("guide_offset",): Span(ORIGIN, foot), ("angle",): Angle(pin)}
+        turned = dict.fromkeys([("angle",), ("exact", 0), ("exact", 1)], Angle(pin))
+        return {("guide_offset",): Span(ORIGIN, foot), **turned}
 
     @property
     def rounded(self):

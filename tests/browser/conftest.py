@@ -3,6 +3,7 @@
 import importlib.util
 import os
 import shutil
+from contextlib import ExitStack
 
 import pytest
 
@@ -38,3 +39,12 @@ def driver():
     found.set_script_timeout(30)
     yield found
     found.quit()
+
+
+@pytest.fixture
+def explored(driver):
+    """Opens explore pages: `explored("pumpjack", "--variant", "weights")`, each with a server that ends with the test."""
+    from support.explored import ExplorePage, explore_server
+
+    with ExitStack() as servers:
+        yield lambda *options, fields="": ExplorePage(driver, servers.enter_context(explore_server(*options)), fields)

@@ -57,6 +57,19 @@ def test_optimum_holds_in_an_independent_solution():
     assert_allclose(compared.iloc[0]["ratio"], bound().report().loc[f"{RATIO} [1]", "after"], rtol=1e-6)
 
 
+def test_each_step_of_a_search_can_be_followed():
+    steps, limit = [], "largest O <= 20 kN"
+    found = ks.design.optimise(SAW, SPRING, TORQUE, limit, variant="cam-circle", angles=90, progress=steps.append)
+    assert [step.values.keys() for step in steps] == [SPRING.keys()] * len(steps)
+    last = min(steps, key=lambda step: (step.missed > 1e-9, step.goal))
+    assert last.values == pytest.approx(found.values, rel=1e-4)
+    assert last.goal == pytest.approx(found.report().loc[f"{TORQUE} [N m]", "after"], rel=1e-3)
+    low = SAW.variant("cam-circle").scene.varied(steps[0].values).solve(90)
+    assert steps[0].goal == pytest.approx(np.abs(low.balancing_torque).mean(), rel=1e-2)
+    excess = np.hypot(*low.reaction("O")).max() / 20e3 - 1.0
+    assert steps[0].missed == pytest.approx(max(excess, 0.0), abs=1e-2)
+
+
 def test_any_machine_can_be_improved():
     """A four-bar's rocker is given the pivot that makes its largest reaction least, its swing kept."""
     bars = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(20.0, 0.15, 0.2))

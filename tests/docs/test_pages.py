@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from kinetostatics.casefile.schema import designs, parts, variants
+from kinetostatics.casefile.schema import designs, meanings, parts, variants
 from support.every import every
 from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, script, shown_code, text_of
 
@@ -177,6 +177,9 @@ def test_reference_links_lead_to_sections():
 
 def test_documented_meanings_belong_to_known_keys():
     keys = {
-        name for model in parts.MADE_OF for key in model.model_fields for name in (key, f"{KEYS.word_of(model)}.{key}")
+        name
+        for model in parts.MADE_OF
+        for key in model.model_fields
+        for name in (key, f"{meanings.word_of(model)}.{key}")
     }
-    assert set(KEYS.MEANINGS) <= keys
+    assert set(meanings.MEANINGS) <= keys

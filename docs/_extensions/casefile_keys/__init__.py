@@ -1,23 +1,17 @@
 """The case-file reference, made of the schema: every key with what may stand there, default, meaning and example.
 
-Meanings are the texts below the keys in ``kinetostatics/casefile/schema``, and `MEANINGS` for groups and loads;
-examples come from the shipped cases and their starters, where they have the key.
+Meanings come from ``kinetostatics/casefile/schema``; examples come from the shipped cases and their starters,
+where they have the key.
 """
 
-import ast
 import inspect
-import re
-from functools import cache
-from itertools import pairwise
-from textwrap import dedent
 from typing import NamedTuple
 
-from kinetostatics.casefile.schema import parts
+from kinetostatics.casefile.schema.meanings import about, meaning
 
 from . import sections
 from .examples import example
-from .meanings import MEANINGS
-from .sections import anchor, own_text, word_of
+from .sections import anchor
 from .words import default, takes
 
 PLACE = "<!-- every key -->"
@@ -74,7 +68,7 @@ def page():
 def parts_of_the_reference():
     """All of it."""
     return [
-        Part(anchor(title), title, inspect.cleandoc(own_text(model)), keys(model, left_out))
+        Part(anchor(title), title, inspect.cleandoc(about(model)), keys(model, left_out))
         for title, model, left_out in sections.sections()
     ]
 
@@ -87,35 +81,3 @@ def keys(model, left_out=()):
         if name not in left_out
     ]
     return sorted(found, key=lambda key: (key.name not in ("kind", "mechanism"), key.default != "required"))
-
-
-def meaning(model, name):
-    """The text of a key."""
-    if model in parts.MADE_OF:
-        if name == "kind":
-            return "Which kind it is."
-        known = MEANINGS.get(f"{word_of(model)}.{name}") or MEANINGS.get(name)
-        return known or parameter(parts.MADE_OF[model], name)
-    owners = [base for base in model.__mro__ if name in vars(base).get("__annotations__", ())]
-    told = model.model_fields[name].description or (texts_below(owners[0]).get(name, "") if owners else "")
-    return told[:1].upper() + told[1:].removesuffix(".") + "." if told else ""
-
-
-def parameter(kind, name):
-    """What the docstring of a class says of a parameter."""
-    text = re.search(rf"^{name} : .*\n((?:    .*(?:\n|\Z))+)", inspect.getdoc(kind), flags=re.MULTILINE)
-    return " ".join(text[1].split()) if text else ""
-
-
-@cache
-def texts_below(model):
-    """Texts that stand below the fields of a class."""
-    body = ast.parse(dedent(inspect.getsource(model))).body[0].body
-    return {
-        field.target.id: text.value.value
-        for field, text in pairwise(body)
-        if isinstance(field, ast.AnnAssign)
-        and isinstance(text, ast.Expr)
-        and isinstance(text.value, ast.Constant)
-        and isinstance(text.value.value, str)
-    }

@@ -10,7 +10,9 @@ from typing import Any
 
 import pydantic
 
-from .sections import flattened, word_of
+from kinetostatics.casefile.schema.meanings import word_of
+
+from .sections import flattened
 
 ROOT = Path(__file__).parents[3]
 LONGEST = 64

@@ -1,6 +1,5 @@
 """Tables of a case file in the order of the page, and the types that stand in them."""
 
-import inspect
 import re
 import types
 import typing
@@ -78,18 +77,6 @@ def chosen(family):
     """Tables of several kinds, by their word."""
     tagged = ((tag.partition(":"), model) for tag, model in tables.TAGS.items())
     return {word: model for (name, _, word), model in tagged if name == family}
-
-
-def own_text(model):
-    """What a table says of itself."""
-    if model in parts.MADE_OF:
-        return inspect.getdoc(parts.MADE_OF[model]).partition("\n\n")[0]
-    return vars(model).get("__doc__") or ""
-
-
-def word_of(model):
-    """The kind of a group or load, as its tables say it."""
-    return typing.get_args(model.model_fields["kind"].annotation)[0] if model in parts.MADE_OF else ""
 
 
 def anchor(title):

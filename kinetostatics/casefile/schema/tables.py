@@ -260,10 +260,20 @@ class BalancingTable(Table):
 
 def validate(model, raw, place):
     """The model or None, and a sentence per fault; ``place(keys)`` gives the keys in the file."""
+    table, found = validate_by_keys(model, raw, place)
+    return table, [sentence for _, sentence in found]
+
+
+def validate_by_keys(model, raw, place=tuple):
+    """The model or None, and the keys and sentence of each fault, as by `validate`."""
     try:
         return model.model_validate(raw), []
     except pydantic.ValidationError as error:
-        return None, [_sentence(model, item, place) for item in error.errors()]
+        return None, [(_keys(item), _sentence(model, item, place)) for item in error.errors()]
+
+
+def _keys(item):
+    return tuple(key for key in item["loc"] if key not in TAGS)
 
 
 NOT_A_TABLE = ("model_type", "dict_type")
@@ -271,7 +281,7 @@ NOT_A_TABLE = ("model_type", "dict_type")
 
 
 def _sentence(model, item, place):
-    keys = tuple(key for key in item["loc"] if key not in TAGS)
+    keys = _keys(item)
     path = key_path(place(keys))
     found = item["input"]
     if item["type"] == "missing":
@@ -311,11 +321,12 @@ def _tables_at(model, keys):
             candidates = [TAGS[key]]
         elif any(key in table.model_fields for table in candidates):  # others are numbers in a list, and names
             fields = [table.model_fields[key].annotation for table in candidates if key in table.model_fields]
-            candidates = [inner for annotation in fields for inner in _tables(annotation)]
+            candidates = [inner for annotation in fields for inner in tables_in(annotation)]
     return candidates
 
 
-def _tables(annotation):
+def tables_in(annotation):
+    """Tables within a type."""
     if isinstance(annotation, type) and issubclass(annotation, Table):
         return [annotation]
-    return [table for part in typing.get_args(annotation) for table in _tables(part)]
+    return [table for part in typing.get_args(annotation) for table in tables_in(part)]

@@ -6,6 +6,9 @@ May import nothing of the package.
 import json
 from pathlib import Path
 
+STARTERS = ("crank-slider", "four-bar", "cam", "chain")
+"""Kinds of starters."""
+
 
 def starter(kind, title):
     """Text of a starter file of this kind; the title also names the mechanism of a chain."""

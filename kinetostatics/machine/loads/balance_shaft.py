@@ -21,6 +21,7 @@ import numpy as np
 from ...numbers import checks
 from ...numbers.planar import add_vectors, cross, dot, left, minus, plus, product, rotate, scale_vector
 from ..crank import ray
+from ..dimensions import of_fixed_point
 from ..group import CRANK, POSITION
 from ..links import Wrench, acceleration_of, present
 from ..supports import Support
@@ -130,6 +131,10 @@ class BalanceShaft(Load):
     def period(self):
         """Crank angle after which the shaft has the same position again, rad."""
         return TURN * _fraction(self.ratio).denominator
+
+    def dimensions(self, mechanism):
+        """Coordinates of its axis."""
+        return of_fixed_point("at", self.at)
 
     @property
     def crank_inertia(self):

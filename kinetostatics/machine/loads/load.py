@@ -16,6 +16,7 @@ spring force and inertia nearly cancel.
     misplaced(mechanism)    problems of the joints and links it names
     refusals(motion)        sentences on crank angles at which it has no value; REFUSES: it may have some
     signs(motion)           symbols by which it is drawn
+    dimensions(mechanism)   lengths of a drawing (`machine.dimensions`)
     shaking(motion)         inertia force on the frame, a `Support`, of its masses that turn with the crank; then also
                             ``crank_inertia``, added to the crank, kg m2 or None, and ``plane`` along the crankshaft, m
     rests_on_frame(mechanism)  whether it puts a force or couple on the frame
@@ -129,6 +130,10 @@ class Load(checks.Checked, Batched):
     def signs(self, motion) -> Any:
         """Symbols by which it is drawn, each a `Symbol`."""
         return ()
+
+    def dimensions(self, mechanism) -> Any:
+        """What its numbers measure on a drawing, by their steps (`machine.dimensions`)."""
+        return {}
 
     def rests_on_frame(self, mechanism) -> bool:
         """Whether it puts a force or couple on the frame: by default if it has wrenches."""

@@ -25,6 +25,7 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..crank import ray
+from ..dimensions import of_place, within
 from ..group import FRAME, Point
 from ..links import Wrench, arm, present
 from ..supports import Support
@@ -241,6 +242,10 @@ class Force(PlacedLoad):
         axis = self._axis(motion)
         yield self.at, (self.value, 0.0) if axis is None else scale_vector(self.value, axis)
 
+    def dimensions(self, mechanism):
+        """Coordinates of its point."""
+        return of_place("at", self.at)
+
     def rests_on_frame(self, mechanism):
         """False: at a fixed point it is an external force on the frame, not a force of the machine."""
         return False
@@ -287,6 +292,11 @@ class PointLoad(PlacedLoad):
         """Opposite forces at both points."""
         force = self.pull(motion)
         return zip(self.between, (force, subtract_vectors(None, force)), strict=True)
+
+    def dimensions(self, mechanism):
+        """Coordinates of both points."""
+        first, second = self.between
+        return within("between", {**of_place(0, first), **of_place(1, second)})
 
     def rests_on_frame(self, mechanism):
         """Whether one of its points is fixed."""

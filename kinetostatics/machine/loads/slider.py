@@ -34,6 +34,7 @@ from ...numbers.planar import (
     scale_vector,
     subtract_vectors,
 )
+from ..dimensions import ORIGIN, Span
 from ..links import acceleration_of, present
 from ..supports import Support
 from . import surge
@@ -57,6 +58,12 @@ class SliderLoad(Load):
     def foot(self, motion) -> Any:
         """Coordinate along the guide at which the frame takes the force, m: by default that of the pin."""
         return motion.placement.travels[self.on].position
+
+    def dimensions(self, mechanism):
+        """Coordinates along the guide."""
+        guide = mechanism.guides[self.on]
+        places = {name: rotate((getattr(self, name), guide.guide_offset), guide.direction) for name in self.LENGTHS}
+        return {(name,): Span(ORIGIN, place, guide.direction) for name, place in places.items()}
 
     def rests_on_frame(self, mechanism):
         return True

@@ -148,12 +148,14 @@ class Torque(Couple):
         """Sentences as for all couples, or if an opposing torque acts on links without relative rotation."""
         problems = [*filter(None, super().misplaced(mechanism))]
         yield from problems
-        if self.opposing and not problems:
-            ratio = np.asarray(number_or_zero(self._ratio(mechanism.place(PROBE_ANGLES * mechanism.turns))))
+        if self.opposing and not problems and self._ratios(mechanism, PROBE_ANGLES[:1]).dtype == float:  # not recorded
             with np.errstate(invalid="ignore"):
-                still = np.abs(ratio) < MIN_RATIO
-            if ratio.dtype == float and still.all(axis=-1).any():
+                still = np.abs(self._ratios(mechanism, PROBE_ANGLES * mechanism.turns)) < MIN_RATIO
+            if still.all(axis=-1).any():
                 yield f"{self.title}: the link does not turn against {self.against or FRAME!r}, so there is no drag"
+
+    def _ratios(self, mechanism, angle):
+        return np.asarray(number_or_zero(self._ratio(mechanism.place(angle))))
 
     def refusals(self, motion):
         """Sentence on rest in an unknown sense."""

@@ -5,7 +5,7 @@
 import { element, put, short } from "./svg.js";
 
 const PAD = 26, HEAD = 9, TURN_RADIUS = 26, WIDEST_TURN = 290, FOOT = 14;
-const TORQUE = " torque"; // its name among the hidden arrows: no reaction begins with a blank
+export const TORQUE = " torque"; // its name among the hidden arrows: no reaction begins with a blank
 
 // Lines, pins and mass centres of a machine in a group.
 class Machine {

@@ -1,4 +1,17 @@
-"""What the keys of groups and loads in a case file mean, in words for its reference."""
+"""Meanings of the keys of a case file, in one sentence each: for its reference, and for forms that change a table.
+
+Tables with fields of their own have the texts below these fields; groups and loads have `MEANINGS`.
+"""
+
+import ast
+import inspect
+import re
+import typing
+from functools import cache
+from itertools import pairwise
+from textwrap import dedent
+
+from .parts import MADE_OF
 
 MEANINGS = {
     "guide_angle": "Direction of the guide, from +x.",
@@ -107,3 +120,49 @@ MEANINGS = {
     "torsion damper.on": "Link that it acts on.",
 }
 """Meaning of the keys of groups and loads, by kind and key, or by key alone."""
+
+
+def word_of(model):
+    """The kind of a group or load, as in its tables; "" for other tables."""
+    return typing.get_args(model.model_fields["kind"].annotation)[0] if model in MADE_OF else ""
+
+
+def about(model):
+    """First sentence on a table."""
+    if model in MADE_OF:
+        return (inspect.getdoc(MADE_OF[model]) or "").partition("\n\n")[0]
+    return vars(model).get("__doc__") or ""
+
+
+@cache
+def meaning(model, name):
+    """Meaning of a key of a table; "" if it has no text."""
+    if model in MADE_OF:
+        if name == "kind":
+            return "Which kind it is."
+        known = MEANINGS.get(f"{word_of(model)}.{name}") or MEANINGS.get(name)
+        return known or _parameter(MADE_OF[model], name)
+    owners = [base for base in model.__mro__ if name in vars(base).get("__annotations__", ())]
+    text = model.model_fields[name].description or (_texts_below(owners[0]).get(name, "") if owners else "")
+    return text[:1].upper() + text[1:].removesuffix(".") + "." if text else ""
+
+
+def _parameter(kind, name):
+    """Text on a parameter in the docstring of a class."""
+    text = re.search(rf"^{name} : .*\n((?:    .*(?:\n|\Z))+)", inspect.getdoc(kind) or "", flags=re.MULTILINE)
+    return " ".join(text[1].split()) if text else ""
+
+
+@cache
+def _texts_below(model):
+    """Texts below the fields of a class."""
+    tree: typing.Any = ast.parse(dedent(inspect.getsource(model)))
+    return {
+        field.target.id: text.value.value
+        for field, text in pairwise(tree.body[0].body)
+        if isinstance(field, ast.AnnAssign)
+        and isinstance(field.target, ast.Name)
+        and isinstance(text, ast.Expr)
+        and isinstance(text.value, ast.Constant)
+        and isinstance(text.value.value, str)
+    }

@@ -1,0 +1,315 @@
+"""Session: what a page or notebook asks of a case or scene, answered without a browser.
+
+A state is ``{"variant": name, "values": {path: number in SI}}``: numbers that differ from the scene of the variant, or
+of its `chain`, the table of a chain that is built on the page (`groups`). A request is a dict with `id` and `kind`; its
+answer carries the same `id` and the state to which its numbers belong.
+"""
+
+import json
+import sys
+import warnings
+from collections import OrderedDict
+from types import GeneratorType
+from typing import Any
+
+import numpy as np
+
+from ...casefile.case import Case, load_case
+from ...cycle.rounding import FLOOR, zeroed
+from ...errors import AssemblyError, KinetostaticsError, ParameterError
+from ...mechanics.quantities import largest_term_in, of_scene
+from ...numbers import checks
+from ...numbers.formatting import pretty_unit
+from ...solution.scene import Scene
+from ..canvas import display_unit, drawn_limit, ordinary_size
+from ..movement import drawing_of
+from ..report.tables import KINDS, decimals
+from . import answers, fields, groups, keeping, running, searching
+from .handles import dragged, handle_data
+
+MAX_SCENES = 32
+"""Scenes kept of the states asked for last."""
+MAX_COUNT = 3600
+"""Most crank angles of a request."""
+MAX_SHOWN = 100
+"""Most quantities of a request."""
+MAX_ADDRESS = 100_000
+"""Longest state in the address of a page, characters."""
+STATE_KEYS = ("variant", "values", "chain")
+
+
+class Session:
+    """Answers to the requests of one page on a case, on a scene, or on a chain that is built on the page.
+
+    Parameters
+    ----------
+    what : Case, str, path, Scene, or dict
+        A dict is the table of a chain (`groups.template`), from which the page starts.
+    variant : str, optional
+        Variant shown first.
+    folder : path, optional
+        The only folder into which files are written; None: none are.
+    """
+
+    def __init__(self, what, variant=None, folder=None):
+        self.chain = what if isinstance(what, dict) else None
+        if self.chain is not None:
+            what = groups.scene_of(self.chain)
+        if isinstance(what, Scene):
+            name = what.mechanism.name
+            self.case, self.title, self.source, self.bases = None, name, "", {name: what}
+        else:
+            case = what if isinstance(what, Case) else load_case(what)
+            self.case, self.title, self.source = case, case.title, case.source
+            self.bases = {name: item.scene for name, item in case.variants.items()}
+        if variant is not None:
+            checks.require("explore", checks.choice("variant", variant, tuple(self.bases)))
+        self.first = variant if variant is not None else next(iter(self.bases))
+        self.folder = folder
+        self.search: Any = None
+        self.saved: tuple[dict, str, str] | None = None
+        """State saved last, the path of its file, and the name of its variant there."""
+        self._reference: tuple[Any, Any] = None, None
+        self._scenes: OrderedDict[str, Scene] = OrderedDict()
+
+    def answer(self, request):
+        """The answer to a request, a dict, or a generator of several; a sentence `problem` on what a user can mend."""
+        request = {"state": None} | request
+        try:
+            checks.require("explore", checks.choice("kind of request", request.get("kind"), tuple(ANSWERS)))
+            for key in ("state", "reference"):
+                if request.get(key) is not None:
+                    require_state(key, request[key])
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                found = ANSWERS[request["kind"]](self, request)
+            if isinstance(found, GeneratorType):
+                return self._parts(request, found)
+            notes = list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
+            return self._marked(request, {"notes": notes} | found)
+        except Exception as error:
+            return self._marked(request, {"problem": problem_text(error)})
+
+    def _parts(self, request, parts):
+        """Answers in parts, all but the last with `more`; None where the next part is not ready."""
+        try:
+            for part in _unwarned(parts):
+                yield part and self._marked(request, {"more": True} | part)
+            yield self._marked(request, {"more": False})
+        except Exception as error:
+            yield self._marked(request, {"problem": problem_text(error)})
+        finally:
+            parts.close()
+
+    def _marked(self, request, found):
+        return {"id": request.get("id"), "kind": request.get("kind"), "state": request.get("state")} | found
+
+    def base(self, state):
+        """Scene of a state without its changed numbers."""
+        require_state("state", state)
+        name = state.get("variant", self.first)
+        checks.require("explore", checks.choice("variant", name, tuple(self.bases)))
+        return groups.scene_of(state["chain"]) if "chain" in state else self.bases[name]
+
+    def scene(self, state):
+        """Scene of a state."""
+        key = json.dumps(state, sort_keys=True)
+        if key not in self._scenes:
+            self._scenes[key] = self.base(state).varied(state.get("values", {}))
+            while len(self._scenes) > MAX_SCENES:
+                self._scenes.popitem(last=False)
+        self._scenes.move_to_end(key)
+        return self._scenes[key]
+
+    def reference(self, state):
+        """The `Reference` of a state, kept until another one is asked for."""
+        scene = self.scene(state)
+        if self._reference[0] is not scene:
+            self._reference = scene, answers.Reference(scene.solve(answers.COUNT))
+        return self._reference[1]
+
+
+def _unwarned(parts):
+    """Parts without warnings: `look` has them, or the parts themselves."""
+    end = object()
+    while True:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            part = next(parts, end)
+        if part is end:
+            return
+        yield part
+
+
+def require_state(key, state):
+    """Raise `ParameterError` unless this is a state."""
+    checks.require(
+        "explore", None if isinstance(state, dict) else f"{key} must be an object, got {checks.shown(state)}"
+    )
+    wrong = [checks.choice(f"key of {key}", name, STATE_KEYS) for name in state]
+    variant, values = state.get("variant", ""), state.get("values", {})
+    wrong += [] if isinstance(variant, str) else [f"variant must be a text, got {checks.shown(variant)}"]
+    if isinstance(values, dict):
+        numbers = {path: value for path, value in values.items() if is_number(value)}
+        wrong += [f"{path} must be a number, got {checks.shown(values[path])}" for path in values.keys() - numbers]
+    else:
+        wrong += [f"values must be an object, got {checks.shown(values)}"]
+    checks.require("explore", *wrong)
+
+
+def is_number(value):
+    """Whether this is a finite number of JSON; Python reads longer integers than floats can hold."""
+    return isinstance(value, float | int) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
+
+
+def problem_text(error):
+    """Sentence on an error for the page; one that is not the user's is named as a fault of the library."""
+    if isinstance(error, AssemblyError):
+        return f"{error.condition}; change the lengths"
+    if isinstance(error, KinetostaticsError):
+        return str(error)
+    return f"this is a fault of the library, please report it: {type(error).__name__}: {error}"
+
+
+def open_page(session, request):
+    """What a page needs at its start: the state and the names of the quantities in its address, if they are valid."""
+    references = session.case.reference_of if session.case else lambda name: name
+    variants = [{"name": name, "reference": references(name)} for name in session.bases]
+    found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
+    chain = {} if session.chain is None else {"chain": session.chain}
+    found["start"] = {"variant": session.first, "values": {}, **chain}
+    address = request.get("address")
+    try:
+        return found | kept_in_address(session, address if isinstance(address, dict) else {})
+    except KinetostaticsError as error:
+        return found | {"notes": [f"the address has no state of this case, so the first one is shown: {error}"]}
+
+
+def kept_in_address(session, address):
+    """State and names of quantities in the texts of an address, those that it has."""
+    found = {}
+    for key, name in (("state", "start"), ("show", "show")):
+        text = address.get(key)
+        if text is None:
+            continue
+        try:
+            short = isinstance(text, str) and len(text) <= MAX_ADDRESS
+            found[name] = json.loads(text) if short else None
+        except (ValueError, RecursionError):
+            found[name] = None
+        if found[name] is None:
+            raise ParameterError(f"{key} is no JSON of at most {MAX_ADDRESS} characters")
+    if "start" in found:
+        session.scene(found["start"])
+    if "show" in found:
+        require_names(found["show"])
+    return found
+
+
+def require_names(names):
+    """Raise `ParameterError` unless these are names of quantities to show."""
+    if not isinstance(names, list) or len(names) > MAX_SHOWN or not all(isinstance(name, str) for name in names):
+        raise ParameterError(f"explore: show must be a list of at most {MAX_SHOWN} names, got {checks.shown(names)}")
+
+
+def describe(session, request):
+    """Fields of the parameters and names of the quantities of a state."""
+    scene = session.scene(request["state"])
+    quantities = [
+        {"name": name, "label": item.label, "unit": pretty_unit(item.unit), "vector": item.vector, "kind": item.kind}
+        for name, item in of_scene(scene).items()
+        if item.kind in KINDS
+    ]
+    drive = running.motor_of(session, {"variant": session.first} | request["state"])[0] is not None
+    return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
+
+
+def count_of(request):
+    """Number of crank angles of a request."""
+    count = request.get("count", 360)
+    if type(count) is not int or not 1 <= count <= MAX_COUNT:
+        raise ParameterError(f"explore: count must be a whole number from 1 to {MAX_COUNT}, got {checks.shown(count)}")
+    return count
+
+
+def look(session, request):
+    """The machine of a state over the period: its drawing and the quantities to show."""
+    scene = session.scene(request["state"])
+    show = request.get("show", [])
+    require_names(show)
+    solution = scene.solve(count_of(request))
+    known = of_scene(scene)
+    return {
+        "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
+        "drawing": drawing_of(solution),
+        "angle": np.degrees(solution.crank_angle),
+        "period": float(np.degrees(scene.period)),
+        "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
+        "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
+        **handle_data(solution),
+    }
+
+
+def drag(session, request):
+    """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
+
+    `step` is the snapping step, m; the page keeps it while a point is dragged.
+    Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
+    """
+    state, place = request["state"], [request.get(key) for key in ("x", "y", "index", "step")]
+    if not all(map(is_number, place)) or not place[3] > 0:
+        raise ParameterError(f"explore: x, y, index and step must be numbers, got {checks.shown(place)}")
+    x, y, index, step = place
+    solution = session.scene(state).solve(count_of(request), on_gap="nan")
+    at = float(x), float(y), int(index) % solution.crank_angle.size
+    moved = dragged(solution, request.get("handle"), *at, request.get("snap") is not False, step)
+    own = session.base(state).parameters
+    values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
+    new = state | {"values": values}
+    session.scene(new)
+    try:
+        return {"state": new} | look(session, request | {"state": new})
+    except KinetostaticsError as error:
+        return {"state": new, "problem": str(error)}
+
+
+def curve(solution, known):
+    """Values of a quantity over the angles of a solution, (parts, N), SI, with the unit in which to show them."""
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term_in(solution, known.unit)))
+    parts = known.read(solution)
+    values = np.stack([np.broadcast_to(part, shape) for part in (parts if known.vector else (parts,))])
+    values = zeroed(values, rounding)
+    size = np.hypot(*values) if known.vector else values
+    factor, unit = display_unit(known.unit, [size])
+    limit = drawn_limit([np.abs(size)])
+    return {
+        "label": known.label,
+        "unit": pretty_unit(unit),
+        "factor": factor,
+        "decimals": decimals(factor * ordinary_size([size])),
+        "vector": known.vector,
+        "sight": factor * limit if np.isfinite(limit) else None,
+        "values": values,
+    }
+
+
+ANSWERS = {
+    "open": open_page,
+    "describe": describe,
+    "look": look,
+    "running": running.running,
+    "drag": drag,
+    "ask": answers.ask,
+    "sensitivities": answers.ask_sensitivities,
+    "tolerances": answers.ask_tolerances,
+    "optimise": searching.answers,
+    "cancel": searching.cancel,
+    "groups": groups.answer_groups,
+    "edit": groups.answer_edit,
+    "save": keeping.save,
+    "python": keeping.python,
+    "report": keeping.report,
+}
+"""Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
+OF_NEWEST: tuple[str, ...] = ("ask", "running", "sensitivities", "tolerances")
+"""Kinds of requests whose answers are dropped when a newer state is asked for."""

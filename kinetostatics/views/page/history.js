@@ -1,0 +1,37 @@
+// States that were shown: undo, redo, and the fields of an address that reopen one.
+export class History {
+  constructor(first) { Object.assign(this, { states: [first], place: 0 }); }
+
+  get now() { return this.states[this.place]; }
+
+  get first() { return this.place === 0; }
+
+  get last() { return this.place === this.states.length - 1; }
+
+  // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on).
+  keep(state, still = false) {
+    if (JSON.stringify(state) === JSON.stringify(this.now)) return;
+    this.states.length = this.place + 1;
+    if (still) this.states[this.place] = state; else this.states.push(state);
+    this.place = this.states.length - 1;
+  }
+
+  move(steps) {
+    const wanted = this.place + steps;
+    if (wanted < 0 || wanted >= this.states.length) return null;
+    this.place = wanted;
+    return this.now;
+  }
+}
+
+// Value of a JSON text of an address; `otherwise` if it has none.
+export function parsed(text, otherwise = null) {
+  try { return JSON.parse(text) ?? otherwise; } catch { return otherwise; }
+}
+
+// Fields of the address's fragment, "#token=...&state=...", as texts.
+export function fragment() { return Object.fromEntries(new URLSearchParams(location.hash.slice(1))); }
+
+export function setFragment(fields) {
+  history.replaceState(null, "", `#${new URLSearchParams(fields)}`);
+}
