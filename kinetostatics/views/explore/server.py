@@ -145,7 +145,8 @@ def application(gate, session_of_page, hosts):
                 self.conversation = Conversation(session_of_page(), self.send)
             self.conversation.take(request)
             if self.sent is not None:
-                await asyncio.wait([self.sent])
+                with contextlib.suppress(asyncio.CancelledError):  # the server ends
+                    await asyncio.wait([self.sent])
 
         def send(self, header, buffers):
             if header["kind"] == "open":
