@@ -1,38 +1,34 @@
 // Groups, loads and friction of a chain that is built on the page: a list with a form for each part, Add and Remove.
-const LISTS = { groups: "Group", loads: "Load", gravity: "Load", friction: "Friction at" };
+import { button, made } from "./html.js";
 
-function made(parent, name, attributes = {}, text = "") {
-  const element = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  if (text) element.textContent = text;
-  parent.append(element);
-  return element;
-}
+const LISTS = { groups: "Group", loads: "Load", gravity: "Load", friction: "Friction at" };
+const HEADINGS = { groups: "Groups", gravity: "Loads", loads: "Loads", friction: "Friction" };
 
 const words = (key) => key.replaceAll("_", " ").replaceAll(".", " ");
 
 export class Groups {
-  // `ask(kind, fields, onanswer)` sends a request; `onchange(state, notes)` gets the state after an action.
-  constructor(element, ask, onchange) {
-    Object.assign(this, { element, ask, onchange, state: null, open: new Set(), titles: null });
-    element.classList.add("groups");
+  // Under an element of the explore page, whose state has a chain.
+  constructor(element, explore) {
+    Object.assign(this, { element, explore, state: null, open: new Set(), titles: null });
     this.build();
+    explore.onchanged((state) => { if (!explore.moving) this.show(state); });
   }
 
   build() {
-    this.adding = made(this.element, "div", { class: "adding" });
-    const label = made(this.adding, "label", {}, "Add ");
-    this.kinds = made(label, "select");
+    const whole = made(this.element, "details", { open: "" });
+    made(whole, "summary", {}, "Groups and loads");
+    const adding = made(whole, "div", { class: "adding" });
+    this.kinds = made(adding, "select", { "aria-label": "group or load to add" });
     this.kinds.addEventListener("change", () => this.about());
-    const button = made(this.adding, "button", { type: "button" }, "Add");
-    button.addEventListener("click", () => {
-      const { at, kind } = this.chosen;
-      this.act({ do: "add", at, kind }, this.refusal);
-    });
-    this.help = made(this.adding, "p", { class: "help" });
-    this.refusal = made(this.adding, "p", { class: "fault", role: "alert" });
-    this.list = made(this.element, "ol");
+    button(adding, "Add", () => this.act({ do: "add", at: this.chosen.at, kind: this.chosen.kind }, this.refusal));
+    this.help = made(whole, "p", { class: "help" });
+    this.refusal = made(whole, "p", { class: "fault", role: "alert" });
+    this.note = made(whole, "p", { class: "help", role: "status" });
+    this.list = made(whole, "div", { class: "parts" });
   }
+
+  // Do the forms belong to the state that is asked for?
+  get settled() { return this.shown === this.state && this.state === this.explore.state; }
 
   get chosen() { return this.known[this.kinds.selectedIndex]; }
 
@@ -41,10 +37,11 @@ export class Groups {
   // Show the parts of the chain of a state; forms that are open stay so, and one of a new part is opened.
   show(state) {
     this.state = state;
-    this.ask("groups", { state }, (answer) => {
+    this.explore.requests.ask("groups", { state }, (answer) => {
       if (answer.problem || JSON.stringify(answer.state) !== JSON.stringify(this.state)) return;
       this.offer(answer.kinds);
       this.fill(answer.parts);
+      this.shown = state;
     });
   }
 
@@ -66,7 +63,11 @@ export class Groups {
     const before = this.titles;
     this.titles = new Set(parts.map(({ title }) => title));
     this.list.replaceChildren();
+    let list = null;
     this.parts = parts.map((part) => {
+      const heading = HEADINGS[part.at[0]];
+      if (heading && heading !== list) made(this.list, "h3", {}, heading);
+      list = heading;
       if (before && !before.has(part.title)) this.open.add(part.title);
       return new Part(this, part);
     });
@@ -84,8 +85,13 @@ export class Groups {
   // Ask for an action; `place` shows a fault, or `onfault(answer)` where it is given.
   act(action, place, onfault = () => {}) {
     place.replaceChildren();
-    this.ask("edit", { state: this.state, action }, (answer) => {
-      if (!answer.problem) { this.refusal.replaceChildren(); this.onchange(answer.state, answer.notes); return; }
+    this.explore.requests.ask("edit", { state: this.state, action }, (answer) => {
+      if (!answer.problem) {
+        this.refusal.replaceChildren();
+        this.note.textContent = answer.notes.join(" ");
+        this.explore.change(answer.state);
+        return;
+      }
       place.textContent = answer.problem;
       onfault(answer);
     });
@@ -96,8 +102,7 @@ export class Groups {
 class Part {
   constructor(groups, { at, title, about, fields }) {
     Object.assign(this, { groups, at, title, inputs: new Map() });
-    const item = made(groups.list, "li");
-    const details = made(item, "details");
+    const details = made(groups.list, "details", { class: "part" });
     details.open = groups.open.has(title);
     details.addEventListener("toggle", () => groups.open[details.open ? "add" : "delete"](title));
     made(details, "summary", {}, title);
@@ -114,7 +119,7 @@ class Part {
       for (const field of others) this.field(more, field);
     }
     this.fault = made(details, "p", { class: "fault", role: "alert" });
-    if (at.length) made(details, "button", { type: "button" }, "Remove").addEventListener("click", () => this.remove());
+    if (at.length) button(details, "Remove", () => this.remove());
   }
 
   field(parent, field) {
@@ -126,9 +131,8 @@ class Part {
       input.placeholder = field.default;
       input.spellcheck = false;
     }
-    if (field.unit) made(label, "span", { class: "unit" }, field.unit);
     const fault = made(label, "span", { class: "fault", role: "alert" });
-    made(label, "small", { class: "help" }, field.text);
+    made(label, "small", { class: "help" }, field.unit ? `${field.text} [${field.unit}]` : field.text);
     input.addEventListener("change", () => this.change());
     this.inputs.set(field.key, { input, fault, value: field.value });
   }
@@ -176,7 +180,7 @@ class Part {
   remove(attached = false) {
     this.groups.act({ do: "remove", at: this.at, attached }, this.fault, ({ carried }) => {
       if (attached || !carried?.length) return;
-      made(this.fault, "button", { type: "button" }, "Remove all").addEventListener("click", () => this.remove(true));
+      button(this.fault, "Remove all", () => this.remove(true));
     });
   }
 }

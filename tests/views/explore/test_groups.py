@@ -128,7 +128,7 @@ def test_an_added_group_has_free_names_and_the_keys_given():
     assert raw["groups"][1] == {
         "kind": "slider",
         "coupler_length": "500 mm",
-        "guide_angle": "0 deg",
+        "guide_angle": "90 deg",
         "guide_offset": "0 mm",
         "on": "A",
         "pin": "C",
@@ -260,9 +260,9 @@ HOSTILE = {
     "list": ([], "a chain must be a table"),
     "none": (None, "a chain must be a table"),
     "deep": (deep(100), "nested more than 20 deep"),
-    "groups": (with_groups([PIN] * 1_000_000), "groups has 1000000 parts; a page takes at most 40"),
-    "values": (with_groups([{"kind": "slider", "x": [1] * 1_000_000}]), "has over 4000 values"),
-    "text": ({"name": "n" * 1_000_000}, "name has 1000000 letters"),
+    "groups": (with_groups([PIN] * 100_000), "groups has 100000 parts; a page takes at most 40"),
+    "values": (with_groups([{"kind": "slider", "x": [1] * 100_000}]), "has over 4000 values"),
+    "text": ({"name": "n" * 100_000}, "name has 100000 letters"),
     "key": ({"k" * 1000: 1}, "must be a key"),
     "nan": ({"crank_speed": float("nan")}, "crank_speed must be a finite number"),
     "integer": ({"crank_speed": 10**400}, "crank_speed must be a finite number"),
@@ -308,7 +308,7 @@ def test_fields_have_the_texts_of_the_schema():
     (length, *_) = fields(groups.MODELS["groups"]["slider"], {})
     assert length == {
         "key": "coupler_length",
-        "text": "From the joint `on` to `pin`.",
+        "text": 'From the joint "on" to "pin".',
         "required": True,
         "unit": "m",
         "form": "text",
@@ -419,7 +419,7 @@ def test_parts_show_the_numbers_of_the_sliders():
     parts = groups.parts_of(state_of("four-bar", crank_length=0.12))
     crank, rocker = (next(item for item in parts["parts"] if item["at"] == at) for at in ([], ["groups", 0]))
     assert {field["key"]: field["value"] for field in crank["fields"]}["crank_length"] == "120 mm"
-    assert rocker["title"] == "1 rocker"
+    assert rocker["title"] == "1 rocker B"
     assert {field["key"]: field["value"] for field in rocker["fields"]}["pivot"] == "350 mm, 100 mm"
     assert {"at": ["friction"], "kind": "O2", "about": "Friction at O2."} in parts["kinds"]
     json.dumps(parts)
@@ -431,7 +431,7 @@ def test_parts_show_the_numbers_of_the_sliders():
 def test_a_page_asks_for_parts_and_actions():
     state = state_of("four-bar")
     parts = groups.answer_groups(None, {"state": state})["parts"]
-    assert [part["title"] for part in parts] == ["crank", "gravity", "1 rocker", "1 torque", "2 force"]
+    assert [part["title"] for part in parts] == ["crank", "1 rocker B", "gravity", "1 torque", "2 force"]
     found = groups.answer_edit(None, {"state": state, "action": {"do": "add", "at": ["groups"], "kind": "slider"}})
     assert len(found["state"]["chain"]["groups"]) == 2
     removal = {"do": "remove", "at": ["groups", 0]}
@@ -459,8 +459,8 @@ def test_a_broken_chain_and_an_action_without_a_place_end_in_words():
 def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     session = Session(groups.template(kind), folder=tmp_path)
 
-    def answer(name, **fields):
-        found = session.answer({"id": 1, "kind": name, **fields})
+    def answer(kind, **fields):
+        found = session.answer({"id": 1, "kind": kind, **fields})
         assert "problem" not in found
         return found
 
@@ -468,11 +468,11 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     assert state["chain"] == groups.template(kind)
     action = {"do": "add", "at": ["groups"], "kind": "dyad"}
     state = answer("edit", state=state | {"values": {"crank_speed": 5.0}}, action=action)["state"]
-    assert "length1" in [field["path"] for field in answer("describe", state=state)["parameters"]]
+    assert "dyad1.mass" in [field["path"] for field in answer("describe", state=state)["parameters"]]
     looked = answer("look", state=state | {"values": {"dyad1.mass": 2.0}}, show=["balancing_torque"], count=24)
     assert looked["values"]["dyad1.mass"] == 2.0
-    assert answer("save", state=looked["state"], name="mine")["saved"] == "mine.toml"
-    again = list(ks.load_case(tmp_path / "mine.toml").variants.values())[-1].scene
+    assert answer("save", state=looked["state"], name=kind)["saved"] == f"{kind}.toml"
+    again = list(ks.load_case(tmp_path / f"{kind}.toml").variants.values())[-1].scene
     assert_same(session.scene(looked["state"]), again)
     python = answer("python", state=looked["state"])["text"]
     names = {}
@@ -484,10 +484,10 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
 
 def test_a_hostile_chain_in_a_state_ends_in_a_message():
     session = Session(groups.template("four-bar"))
-    for raw, words in HOSTILE.values():
-        found = session.answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
-        assert words in found["problem"] or "library" not in found["problem"]
-        assert len(found["problem"]) < 4000
+    for name, (raw, words) in HOSTILE.items():
+        if name not in ("object", "numbers as keys"):  # no JSON
+            found = session.answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
+            assert words in found["problem"]
 
 
 # A chain of many actions is the same from a file
