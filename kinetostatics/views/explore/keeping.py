@@ -19,6 +19,12 @@ NAME = re.compile(r"\w[\w -]{0,79}")
 """Name of a file without its ending: no separators of folders, and no dots."""
 
 
+def first_name(session):
+    """Name of files that the page offers first."""
+    name = f"{session.case.path.stem}_changed" if session.case else session.title
+    return re.sub(r"^[_ -]+|[^\w -]", "", normalise(name))[:80].strip() or "machine"
+
+
 def path_of(session, request, ending):
     """Path of a file of this name in the session's folder; `ParameterError` if it must not be written."""
     if session.folder is None:

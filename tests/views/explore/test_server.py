@@ -178,7 +178,10 @@ def test_a_page_without_the_token_is_closed(name):
             fields["token"] = client.gate.token
         return await page.ask(**fields), page.end
 
-    assert served(closed) == (None, (1008, "This address is of an earlier start."))
+    assert served(closed) == (
+        None,
+        (1008, "This address is of an earlier start; open the one that the command printed last."),
+    )
 
 
 def test_a_ticket_opens_one_page_which_learns_the_token():
