@@ -123,8 +123,8 @@ export class Explore {
 
   open(answer) {
     if (answer.problem) { this.say(answer.problem); return; }
-    const kept = this.address.read();
-    Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
+    const kept = this.address.read(), frozen = parsed(kept.compared);
+    Object.assign(this, { opened: answer, variants: answer.variants, frozen: frozen?.state ? frozen : null });
     if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
     this.keep = new Keep(this.keeping, this, answer.file);
@@ -132,7 +132,7 @@ export class Explore {
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
     this.curves.chosen = answer.show ?? [];
-    this.curves.planes = new Set(parsed(kept.planes, []));
+    this.curves.planes = new Set([parsed(kept.planes, [])].flat());
     this.at = Number(kept.angle) || 0;
     this.present();
   }
