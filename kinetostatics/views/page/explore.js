@@ -19,6 +19,7 @@ import { Handles } from "./handles.js";
 import { Groups } from "./groups.js";
 import { History, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
+import { Keep } from "./keep.js";
 import { Mechanism } from "./mechanism.js";
 import { Parameters } from "./parameters.js";
 
@@ -122,14 +123,16 @@ export class Explore {
 
   open(answer) {
     if (answer.problem) { this.say(answer.problem); return; }
-    const kept = this.address.read();
-    Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
+    const kept = this.address.read(), frozen = parsed(kept.compared);
+    Object.assign(this, { opened: answer, variants: answer.variants, frozen: frozen?.state ? frozen : null });
+    if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
+    this.keep = new Keep(this.keeping, this, answer.file);
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
     this.curves.chosen = answer.show ?? [];
-    this.curves.planes = new Set(parsed(kept.planes, []));
+    this.curves.planes = new Set([parsed(kept.planes, [])].flat());
     this.at = Number(kept.angle) || 0;
     this.present();
   }
@@ -342,7 +345,7 @@ export class Explore {
 
   lost(reason) {
     this.root.classList.add("lost");
-    this.say(`${reason || "The library has ended."} Start it again, and load this page anew.`);
+    this.say(reason || "The library has ended. Start it again, and open the address that it prints.");
   }
 }
 
