@@ -243,7 +243,7 @@ def test_hostile_texts_of_a_case_stay_texts(driver, tmp_path):
     path = tmp_path / "hostile.toml"
     hostile = "<img src=x onerror=document.body.dataset.broken=1>"
     path.write_text(
-        f'title = "{hostile}"\n[common]\nmechanism = "crank-slider"\ncrank_speed = "960 rpm"\ncrank_length = "50 mm"\n'
+        f'title = "{hostile}"\nreference = "{hostile}"\n[common]\nmechanism = "crank-slider"\ncrank_speed = "960 rpm"\ncrank_length = "50 mm"\n'
         f'coupler_length = "200 mm"\nslider.mass = "1 kg"\n[variants."{hostile}"]\n',
         encoding="utf-8",
     )
