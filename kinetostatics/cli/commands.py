@@ -289,8 +289,13 @@ def explore(options):
     from ..views.explore.server import serve
 
     checks.require("--folder", files.folder_write_problem(options.folder) if options.folder else None)
+    subject = options.case
+    if options.new:
+        from ..views.explore.groups import template
+
+        subject = template(options.new)
     serve(
-        options.case,
+        subject,
         options.variant,
         options.folder or ".",
         options.port,

@@ -40,7 +40,7 @@ def fields(model, raw, prefix="", needed=True):
         if name in FILE_KEYS or (inner and typing.get_origin(field.annotation) in (tuple, dict)):
             continue
         required, key = needed and field.is_required(), f"{prefix}{name}"
-        text = meaning(model, name).replace("; or a file of values", "")
+        text = plain(meaning(model, name)).replace("; or a file of values", "")
         if not inner:
             if name != "kind":
                 found.append({"key": key, "text": text, "required": required} | _entry(model, name, field))
@@ -55,6 +55,11 @@ def fields(model, raw, prefix="", needed=True):
             found.append({"key": f"{key}.kind", "text": text, "required": required} | kind)
         found += fields(chosen, own, f"{key}.", needed=required or bool(own))
     return sorted(found, key=lambda field: not field["required"])
+
+
+def plain(text):
+    """A text of the reference without its marks."""
+    return text.replace("`", '"')
 
 
 def _is_plain(table):

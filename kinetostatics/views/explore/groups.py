@@ -27,7 +27,7 @@ from ...errors import KinetostaticsError, ParameterError
 from ...numbers import checks
 from ...solution.scene import Scene
 from . import proposals
-from .forms import FILE_KEYS, fields, number_text, text_of, with_texts
+from .forms import FILE_KEYS, fields, number_text, plain, text_of, with_texts
 
 MAX_PARTS = 40
 """Most groups, and most loads, of a chain built on a page."""
@@ -360,9 +360,10 @@ def state_after(state, action):
 def parts_of(state):
     """Parts of the chain of a state, each with its place, title and the fields of its form, and kinds to add."""
     raw, _ = with_values(state["chain"], state.get("values", {}))
-    mechanism = read(raw).scene.mechanism
-    places: list[list[Any]] = [[], *([["gravity"]] if "gravity" in raw else [])]
-    places += [[name, number] for name in MODELS for number in range(len(raw.get(name, ())))]
+    table, mechanism = read(raw).table, read(raw).scene.mechanism
+    places: list[list[Any]] = [[], *(["groups", number] for number in range(len(raw["groups"])))]
+    places += [["gravity"]] if "gravity" in raw else []
+    places += [["loads", number] for number in range(len(raw.get("loads", ())))]
     places += [["friction", joint] for joint in raw.get("friction", {})]
     found = []
     for at in places:
@@ -371,9 +372,13 @@ def parts_of(state):
         if at[:1] == ["friction"]:
             entries = [item for item in entries if item["key"] in proposals.friction_keys(at[1], mechanism)]
         entries = [item | {"value": text_of(_value(owner[key], item["key"]))} for item in entries]
-        found.append({"at": at, "title": _title(raw, at), "about": about(model) if at else "", "fields": entries})
+        found.append(
+            {"at": at, "title": _title(table, at), "about": plain(about(model)) if at else "", "fields": entries}
+        )
     kinds = [
-        {"at": [name], "kind": kind, "about": about(model)} for name in MODELS for kind, model in MODELS[name].items()
+        {"at": [name], "kind": kind, "about": plain(about(model))}
+        for name in MODELS
+        for kind, model in MODELS[name].items()
     ]
     kinds += [] if "gravity" in raw else [{"at": ["gravity"], "kind": "gravity", "about": "Weight of all masses."}]
     free = [joint for joint in mechanism.pairs if joint not in raw.get("friction", {})]
@@ -413,14 +418,15 @@ def _key(keys, place):
     return ".".join(key for key in inner if isinstance(key, str))
 
 
-def _title(raw, at):
+def _title(table, at):
     """Title of a part: "2 dyad D"."""
     match at:
         case []:
             return "crank"
         case ["groups" | "loads" as name, number]:
-            part = raw[name][number]
-            return " ".join(filter(None, (str(number + 1), part["kind"], part.get("pin", part.get("name", "")))))
+            part = getattr(table, name)[number]
+            joint = getattr(part, "pin", getattr(part, "name", ""))
+            return " ".join(filter(None, (str(number + 1), part.kind, joint)))
         case ["friction", joint]:
             return f"friction at {joint}"
     return at[0]

@@ -12,10 +12,15 @@ from ...machine.group import FRAME
 
 ANGLES = 72
 """Crank angles at which the way of a joint is computed."""
+MM_DECIMALS = 6
+"""Decimals of proposed lengths in mm."""
 MIN_CHANGE = 1e-6
 """Least change of the distance of two joints for a dyad, over the distance."""
 SCALE = 0.1
 """Radius of the way of a joint, m, where there is none: of a crank without a length."""
+MASS = {"mass": "1 kg"}
+BODY = {"mass": "1 kg", "inertia": "0.01 kg m^2"}
+"""Of the last link of a group, so that forces flow; of one that turns."""
 CAMS: dict[str, dict[str, Any]] = {
     "circle": {"radius": "200 mm"},
     "cosine-law": {"amplitude": "100 mm", "mean": "500 mm"},
@@ -33,29 +38,37 @@ def proposed_group(kind, mechanism):
     (x, y), r = way.centre, way.radius
     pin, pivot = {"pin": way.free_name("B")}, {"pivot_name": way.free_pivot}
     on = {"on": way.joint}
-    level = {"guide_angle": "0 deg", "guide_offset": _mm(y)}
+    turned = 90 * sum(way.joint in group.hangs_on for group in mechanism.groups if group.guides)
+    offset = y * np.cos(np.radians(turned)) - x * np.sin(np.radians(turned))
+    level = {"guide_angle": f"{turned % 360} deg", "guide_offset": _mm(offset)}
     match kind:
         case "slider":
-            return {"coupler_length": _mm(4 * r), **level, **on, **pin}
+            return {"coupler_length": _mm(4 * r), **level, **on, **pin, "slider": MASS}
         case "rocker":
             bars = {"coupler_length": _mm(4 * r), "rocker_length": _mm(3 * r), "pivot": _point(x + 3.5 * r, y + r)}
-            return {**bars, **on, **pin, **pivot}
+            return {**bars, **on, **pin, **pivot, "rocker": BODY}
         case "lever":
-            return {"pivot": _point(x, y - 2.4 * r), **on, **pivot}
+            return {"pivot": _point(x, y - 2.4 * r), **on, **pivot, "lever": BODY}
         case "cylinder":
-            return {"pivot": _point(x - 4 * r, y), **on, **pivot}
+            return {"pivot": _point(x - 4 * r, y), **on, **pivot, "cylinder": BODY}
         case "yoke":
-            return {**level, **on, **pin}
+            return {**level, **on, **pin, "slider": MASS}
         case "planetary crank":
-            return {"radius": _mm(r), **pin}
+            return {"radius": _mm(r), **pin, "planet": MASS}
         case "dyad":
             first, second, apart = way.two_joints
-            return {"length1": _mm(0.75 * apart), "length2": _mm(0.75 * apart), "on": [first, second], **pin}
+            return {
+                "length1": _mm(0.75 * apart),
+                "length2": _mm(0.75 * apart),
+                "on": [first, second],
+                **pin,
+                "dyad2": MASS,
+            }
         case "pin":
             link, length = way.bar
             return {"on": link, "at": [_mm(length), "0 mm"], "name": way.free_name("C")}
         case "cam roller":
-            return {"cam": {"kind": "circle", **CAMS["circle"]}}
+            return {"cam": {"kind": "circle", **CAMS["circle"]}, "block": MASS}
         case "swinging follower":
             law = {"kind": "cosine", "amplitude": "5 deg", "mean": "40 deg"}
             return {
@@ -64,8 +77,10 @@ def proposed_group(kind, mechanism):
                 "cam": law,
                 "pin": way.free_name("R"),
                 **pivot,
+                "arm": BODY,
             }
-    return {"cam": {"kind": "cosine", **CAMS["cosine"]}, "guide_angle": "90 deg", "pin": way.free_name("R")}
+    law = {"kind": "cosine", **CAMS["cosine"]}
+    return {"cam": law, "guide_angle": "90 deg", "pin": way.free_name("R"), "follower": MASS}
 
 
 def proposed_load(kind, mechanism):
@@ -220,7 +235,7 @@ def _middle(values):
 
 
 def _mm(length):
-    return f"{1e3 * length:.4g} mm"
+    return f"{round(1e3 * length, MM_DECIMALS) or 0.0:.4g} mm"
 
 
 def _point(x, y):

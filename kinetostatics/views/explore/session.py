@@ -16,7 +16,7 @@ import numpy as np
 
 from ...casefile.case import Case, load_case
 from ...cycle.rounding import FLOOR, zeroed
-from ...errors import KinetostaticsError, ParameterError
+from ...errors import AssemblyError, KinetostaticsError, ParameterError
 from ...mechanics.quantities import largest_term_in, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
@@ -122,10 +122,10 @@ class Session:
         return self._scenes[key]
 
     def reference(self, state):
-        """Solution of the state of the reference, kept with its extremes until another one is asked for."""
+        """The `Reference` of a state, kept until another one is asked for."""
         scene = self.scene(state)
         if self._reference[0] is not scene:
-            self._reference = scene, scene.solve(answers.COUNT)
+            self._reference = scene, answers.Reference(scene.solve(answers.COUNT))
         return self._reference[1]
 
 
@@ -164,6 +164,8 @@ def is_number(value):
 
 def problem_text(error):
     """Sentence on an error for the page; one that is not the user's is named as a fault of the library."""
+    if isinstance(error, AssemblyError):
+        return f"{error.condition}; change the lengths"
     if isinstance(error, KinetostaticsError):
         return str(error)
     return f"this is a fault of the library, please report it: {type(error).__name__}: {error}"
@@ -251,15 +253,16 @@ def look(session, request):
 def drag(session, request):
     """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
 
+    `step` is the snapping step, m; the page keeps it while a point is dragged.
     Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
     """
-    state, place = request["state"], [request.get(key) for key in ("x", "y", "index")]
-    if not all(map(is_number, place)):
-        raise ParameterError(f"explore: x, y and index must be numbers, got {checks.shown(place)}")
-    x, y, index = place
+    state, place = request["state"], [request.get(key) for key in ("x", "y", "index", "step")]
+    if not all(map(is_number, place)) or not place[3] > 0:
+        raise ParameterError(f"explore: x, y, index and step must be numbers, got {checks.shown(place)}")
+    x, y, index, step = place
     solution = session.scene(state).solve(count_of(request), on_gap="nan")
     at = float(x), float(y), int(index) % solution.crank_angle.size
-    moved = dragged(solution, request.get("handle"), *at, snap=request.get("snap") is not False)
+    moved = dragged(solution, request.get("handle"), *at, request.get("snap") is not False, step)
     own = session.base(state).parameters
     values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
     new = state | {"values": values}

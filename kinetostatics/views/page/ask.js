@@ -38,7 +38,7 @@ export class Ask {
   constructor(parent, explore) {
     Object.assign(this, { root: parent, explore, timer: null, stops: [] });
     const numbers = this.section("Numbers", true);
-    this.extremes = new Numbers(numbers, "Extremes over the period; largest size in the reference, over that here", EXTREMES);
+    this.extremes = new Numbers(numbers, "Extremes, and largest size in the reference", EXTREMES);
     this.figures = new Numbers(numbers, "Means and torque extrema", FIGURES);
     this.notes = made(numbers, "p", { class: "notes" });
     const change = this.section("What should I change?");

@@ -2,6 +2,7 @@
 import { button, made } from "./html.js";
 
 const LISTS = { groups: "Group", loads: "Load", gravity: "Load", friction: "Friction at" };
+const HEADINGS = { groups: "Groups", gravity: "Loads", loads: "Loads", friction: "Friction" };
 
 const words = (key) => key.replaceAll("_", " ").replaceAll(".", " ");
 
@@ -26,6 +27,9 @@ export class Groups {
     this.list = made(whole, "div", { class: "parts" });
   }
 
+  // Do the forms belong to the state that is asked for?
+  get settled() { return this.shown === this.state && this.state === this.explore.state; }
+
   get chosen() { return this.known[this.kinds.selectedIndex]; }
 
   about() { this.help.textContent = this.chosen.about; }
@@ -37,6 +41,7 @@ export class Groups {
       if (answer.problem || JSON.stringify(answer.state) !== JSON.stringify(this.state)) return;
       this.offer(answer.kinds);
       this.fill(answer.parts);
+      this.shown = state;
     });
   }
 
@@ -58,7 +63,11 @@ export class Groups {
     const before = this.titles;
     this.titles = new Set(parts.map(({ title }) => title));
     this.list.replaceChildren();
+    let list = null;
     this.parts = parts.map((part) => {
+      const heading = HEADINGS[part.at[0]];
+      if (heading && heading !== list) made(this.list, "h3", {}, heading);
+      list = heading;
       if (before && !before.has(part.title)) this.open.add(part.title);
       return new Part(this, part);
     });
@@ -122,9 +131,8 @@ class Part {
       input.placeholder = field.default;
       input.spellcheck = false;
     }
-    if (field.unit) made(label, "span", { class: "unit" }, field.unit);
     const fault = made(label, "span", { class: "fault", role: "alert" });
-    made(label, "small", { class: "help" }, field.text);
+    made(label, "small", { class: "help" }, field.unit ? `${field.text} [${field.unit}]` : field.text);
     input.addEventListener("change", () => this.change());
     this.inputs.set(field.key, { input, fault, value: field.value });
   }

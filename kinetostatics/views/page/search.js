@@ -80,7 +80,8 @@ export class Search {
     if (answer.problem) this.progress.textContent = answer.problem;
     else if (answer.cancelled) this.progress.textContent = "Cancelled.";
     else if (answer.values) this.finish(answer, before);
-    if (!answer.more) this.running(false);
+    else return;
+    this.running(false);
   }
 
   finish({ goal, values, rows, active, notes }, now) {

@@ -128,7 +128,7 @@ def test_an_added_group_has_free_names_and_the_keys_given():
     assert raw["groups"][1] == {
         "kind": "slider",
         "coupler_length": "500 mm",
-        "guide_angle": "0 deg",
+        "guide_angle": "90 deg",
         "guide_offset": "0 mm",
         "on": "A",
         "pin": "C",
@@ -308,7 +308,7 @@ def test_fields_have_the_texts_of_the_schema():
     (length, *_) = fields(groups.MODELS["groups"]["slider"], {})
     assert length == {
         "key": "coupler_length",
-        "text": "From the joint `on` to `pin`.",
+        "text": 'From the joint "on" to "pin".',
         "required": True,
         "unit": "m",
         "form": "text",
@@ -419,7 +419,7 @@ def test_parts_show_the_numbers_of_the_sliders():
     parts = groups.parts_of(state_of("four-bar", crank_length=0.12))
     crank, rocker = (next(item for item in parts["parts"] if item["at"] == at) for at in ([], ["groups", 0]))
     assert {field["key"]: field["value"] for field in crank["fields"]}["crank_length"] == "120 mm"
-    assert rocker["title"] == "1 rocker"
+    assert rocker["title"] == "1 rocker B"
     assert {field["key"]: field["value"] for field in rocker["fields"]}["pivot"] == "350 mm, 100 mm"
     assert {"at": ["friction"], "kind": "O2", "about": "Friction at O2."} in parts["kinds"]
     json.dumps(parts)
@@ -431,7 +431,7 @@ def test_parts_show_the_numbers_of_the_sliders():
 def test_a_page_asks_for_parts_and_actions():
     state = state_of("four-bar")
     parts = groups.answer_groups(None, {"state": state})["parts"]
-    assert [part["title"] for part in parts] == ["crank", "gravity", "1 rocker", "1 torque", "2 force"]
+    assert [part["title"] for part in parts] == ["crank", "1 rocker B", "gravity", "1 torque", "2 force"]
     found = groups.answer_edit(None, {"state": state, "action": {"do": "add", "at": ["groups"], "kind": "slider"}})
     assert len(found["state"]["chain"]["groups"]) == 2
     removal = {"do": "remove", "at": ["groups", 0]}
