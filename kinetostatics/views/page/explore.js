@@ -19,6 +19,7 @@ import { Handles } from "./handles.js";
 import { Groups } from "./groups.js";
 import { History, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
+import { Keep } from "./keep.js";
 import { Mechanism } from "./mechanism.js";
 import { Parameters } from "./parameters.js";
 
@@ -124,7 +125,9 @@ export class Explore {
     if (answer.problem) { this.say(answer.problem); return; }
     const kept = this.address.read();
     Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
+    if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
+    this.keep = new Keep(this.keeping, this, answer.file);
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
@@ -342,7 +345,7 @@ export class Explore {
 
   lost(reason) {
     this.root.classList.add("lost");
-    this.say(`${reason || "The library has ended."} Start it again, and load this page anew.`);
+    this.say(reason || "The library has ended. Start it again, and open the address that it prints.");
   }
 }
 

@@ -29,8 +29,13 @@ export function parsed(text, otherwise = null) {
   try { return JSON.parse(text) ?? otherwise; } catch { return otherwise; }
 }
 
+const LONGEST = 100001; // characters of a field: one more than the library reads
+
 // Fields of the address's fragment, "#token=...&state=...", as texts.
-export function fragment() { return Object.fromEntries(new URLSearchParams(location.hash.slice(1))); }
+export function fragment() {
+  const fields = [...new URLSearchParams(location.hash.slice(1))];
+  return Object.fromEntries(fields.map(([name, text]) => [name, text.slice(0, LONGEST)]));
+}
 
 export function setFragment(fields) {
   history.replaceState(null, "", `#${new URLSearchParams(fields)}`);
