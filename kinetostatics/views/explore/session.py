@@ -17,7 +17,7 @@ import numpy as np
 from ...casefile.case import Case, load_case
 from ...cycle.rounding import FLOOR, zeroed
 from ...errors import KinetostaticsError, ParameterError
-from ...mechanics.quantities import components, largest_term, of_scene
+from ...mechanics.quantities import largest_term_in, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
@@ -243,7 +243,7 @@ def look(session, request):
         "angle": np.degrees(solution.crank_angle),
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
-        "quantities": {name: curve(solution, name) for name in dict.fromkeys(show) if name in known},
+        "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
         **handle_data(solution),
     }
 
@@ -270,11 +270,12 @@ def drag(session, request):
         return {"state": new, "problem": str(error)}
 
 
-def curve(solution, name):
+def curve(solution, known):
     """Values of a quantity over the angles of a solution, (parts, N), SI, with the unit in which to show them."""
-    known = of_scene(solution)[name]
-    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term(solution, name)))
-    values = zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term_in(solution, known.unit)))
+    parts = known.read(solution)
+    values = np.stack([np.broadcast_to(part, shape) for part in (parts if known.vector else (parts,))])
+    values = zeroed(values, rounding)
     size = np.hypot(*values) if known.vector else values
     factor, unit = display_unit(known.unit, [size])
     limit = drawn_limit([np.abs(size)])

@@ -4,7 +4,7 @@
 import { element, put, short } from "./svg.js";
 
 const LEFT = 58, RIGHT = 16, TOP = 26, BOTTOM = 38;
-const CLOSEST_TICKS = 42; // pixels
+const CLOSEST_ROWS = 24, CLOSEST_COLUMNS = 42; // pixels between ticks
 const AIR = 0.06; // of the range, beyond the curves
 const USED = 0.6; // share of the range below which it shrinks
 const TURN_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360];
@@ -151,7 +151,7 @@ export class Chart {
 
   // Steps of the ticks along both axes.
   steps() {
-    const { across, plane, period } = this, step = roundStep(CLOSEST_TICKS / this.scaleY);
+    const { across, plane, period } = this, step = roundStep((plane ? CLOSEST_COLUMNS : CLOSEST_ROWS) / this.scaleY);
     if (plane) return [step, step];
     const turn = TURN_STEPS.find((degrees) => degrees >= spanOf(across) / 4.5);
     return [turn && spanOf(across) < period ? turn : period / 4, step];

@@ -81,14 +81,14 @@ export class Explore {
     this.sheet = made(this.root, "div", { class: "sheet" });
     const head = made(this.sheet, "header");
     this.title = made(head, "h1");
-    this.tabs = made(head, "div", { class: "tabs", role: "tablist", "aria-label": "variants" });
     const tools = made(head, "div", { class: "tools" });
     this.undo = button(tools, "↶ Undo", () => this.move(-1), { title: "Ctrl+Z" });
     this.redo = button(tools, "↷ Redo", () => this.move(1), { title: "Ctrl+Shift+Z" });
     this.freeze = button(tools, "Compare with now", () => this.compare(true));
     this.thaw = button(tools, "Compare with", () => this.compare(false));
     this.both = checkbox(tools, "reference in the drawing", false, () => this.redraw());
-    this.keeping = made(tools, "div", { class: "keep" });
+    this.tabs = made(head, "div", { class: "tabs", role: "tablist", "aria-label": "variants" });
+    this.keeping = made(head, "div", { class: "keep" });
     this.problem = made(this.sheet, "p", { class: "problem", role: "alert", hidden: "" });
     this.notes = made(this.sheet, "div", { class: "notes", role: "status" });
     const body = made(this.sheet, "div", { class: "body" });
@@ -291,8 +291,6 @@ export class Explore {
 
   redraw() {
     const { shown, reference } = this;
-    this.undo.disabled = this.history.first;
-    this.redo.disabled = this.history.last;
     if (!shown) return;
     this.parameters.show(shown.values);
     this.mechanism.show(shown, this.both.checked ? reference : null, this.moving);
@@ -314,6 +312,8 @@ export class Explore {
 
   // The address reopens what is shown.
   remember() {
+    this.undo.disabled = this.history.first;
+    this.redo.disabled = this.history.last;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.address.write({
       state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen), planes: JSON.stringify([...this.curves.planes]),
