@@ -124,16 +124,17 @@ export class Explore {
   open(answer) {
     if (answer.problem) { this.say(answer.problem); return; }
     const kept = this.address.read();
-    Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
+    const frozen = parsed(kept.compared), planes = parsed(kept.planes);
+    Object.assign(this, { opened: answer, variants: answer.variants, at: Number(kept.angle) || 0 });
+    if (typeof frozen?.label === "string" && frozen.state) this.frozen = frozen;
     if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
     this.keep = new Keep(this.keeping, this, answer.file);
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
-    this.curves.chosen = answer.show ?? [];
-    this.curves.planes = new Set(parsed(kept.planes, []));
-    this.at = Number(kept.angle) || 0;
+    this.curves.chosen = answer.show;
+    if (Array.isArray(planes)) this.curves.planes = new Set(planes);
     this.present();
   }
 
@@ -194,7 +195,7 @@ export class Explore {
       if (answer.problem) { this.refuse(answer); return; }
       this.described = structure;
       this.known = answer;
-      if (!this.curves.chosen.length) this.curves.chosen = firstCurves(answer.quantities);
+      this.curves.chosen ??= firstCurves(answer.quantities);
       this.curves.offer(answer.quantities, answer.drive);
       this.parameters.describe(answer.parameters);
       this.handles.describe(answer.parameters);
@@ -262,6 +263,7 @@ export class Explore {
       this.remember();
       this.tell("changed", answer.state);
     }
+    if (keyOf({ ...answer.state, values: {} }) !== this.described) return; // of the tab before
     this.answered = answer;
     if (answer.problem) { this.refuse(answer); return; }
     const first = !this.ready;

@@ -1,4 +1,6 @@
 // States that were shown: undo, redo, and the fields of an address that reopen one.
+const MOST_STATES = 1000; // that can be undone
+
 export class History {
   constructor(first) { Object.assign(this, { states: [first], place: 0 }); }
 
@@ -13,6 +15,7 @@ export class History {
     if (JSON.stringify(state) === JSON.stringify(this.now)) return;
     this.states.length = this.place + 1;
     if (still) this.states[this.place] = state; else this.states.push(state);
+    if (this.states.length > MOST_STATES) this.states.shift();
     this.place = this.states.length - 1;
   }
 
