@@ -164,9 +164,14 @@ export class Explore {
   }
 
   change(state, still = false) {
-    this.history.keep(state, still && this.moving);
-    this.moving = still;
+    this.keep(state, still);
     this.present();
+  }
+
+  // A movement begins with the first state that differs: it must not replace the state before it.
+  keep(state, still) {
+    const kept = this.history.keep(state, this.moving);
+    this.moving = still && (kept || this.moving);
   }
 
   drag(fields, still = true) {
@@ -257,8 +262,7 @@ export class Explore {
 
   receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
-      this.history.keep(answer.state, this.moving);
-      this.moving = asked.still;
+      this.keep(answer.state, asked.still);
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);

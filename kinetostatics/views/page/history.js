@@ -10,13 +10,15 @@ export class History {
 
   get last() { return this.place === this.states.length - 1; }
 
-  // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on).
+  // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on). Whether it
+  // differs from the present one.
   keep(state, still = false) {
-    if (JSON.stringify(state) === JSON.stringify(this.now)) return;
+    if (JSON.stringify(state) === JSON.stringify(this.now)) return false;
     this.states.length = this.place + 1;
     if (still) this.states[this.place] = state; else this.states.push(state);
     if (this.states.length > MOST_STATES) this.states.shift();
     this.place = this.states.length - 1;
+    return true;
   }
 
   move(steps) {
