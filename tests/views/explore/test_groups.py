@@ -180,6 +180,34 @@ def test_another_kind_of_cam_gets_its_own_keys():
     assert list(raw["groups"][0]["cam"]) == ["kind", "cosine"]
 
 
+@every("kind", ["roller follower", "flat follower", "swinging follower"])
+def test_a_law_of_segments_rises_dwells_and_returns(kind):
+    raw = added(groups.template("crank-slider"), kind)
+    raw = groups.edited(raw, {"do": "change", "at": ["groups", 1], "keys": {"cam.kind": "joined"}})
+    assert np.isfinite(groups.scene_of(raw).solve(24).balancing_torque).all()
+    unit = "deg" if kind.startswith("swinging") else "mm"
+    text = f"harmonic, 50 {unit}, 60 {unit}, 180 deg; harmonic, 60 {unit}, 50 {unit}, 180 deg"
+    raw = groups.edited(raw, {"do": "change", "at": ["groups", 1], "keys": {"cam.segments": text}})
+    assert raw["groups"][1]["cam"]["segments"][0] == {
+        "kind": "harmonic",
+        "start": f"50 {unit}",
+        "end": f"60 {unit}",
+        "angle": "180 deg",
+    }
+    for wrong, words in SEGMENTS_WITH_FAULTS.items():
+        change = {"do": "change", "at": ["groups", 1], "keys": {"cam.segments": wrong}}
+        with pytest.raises(groups.ChainError, match=words):
+            groups.edited(raw, change)
+
+
+SEGMENTS_WITH_FAULTS = {
+    "harmonic, 50 mm": r"cam\.segments\[1\]\.end is missing",
+    "spline, 1 mm, 2 mm, 3 deg": r"cam\.segments\[1\]\.kind is 'spline', allowed",
+    "dwell, 50 mm, 180 deg, 7": r"cam\.segments\[1\]\.value 3 is not a key here",
+    ";": r"cam\.segments\[1\]\.kind is '', allowed",
+}
+
+
 def test_crank_and_drive_change_as_a_part():
     raw = groups.edited(groups.template("four-bar"), {"do": "change", "at": [], "keys": {"crank_speed": "90 rpm"}})
     assert groups.scene_of(raw).crank_speed == pytest.approx(3.0 * np.pi)
@@ -322,7 +350,7 @@ def test_every_field_is_told_of(part):
     name, kind = part
     for field in fields(groups.MODELS[name][kind], {}):
         assert field["text"].endswith("."), field["key"]
-        assert field["form"] in ("text", "number", "choice", "list", "place", "places")
+        assert field["form"] in ("text", "number", "choice", "list", "place", "places", "segments")
         assert field["form"] != "choice" or len(field["choices"]) > 0
         assert "file" not in field["text"]
 
@@ -406,6 +434,22 @@ def test_a_number_without_a_place_in_the_table_stays_beside_it():
     found, notes = groups.state_after(found, change)
     assert found["values"] == {}
     assert notes == ["changed numbers are lost with the part that had them: coupler.centre.along"]
+
+
+@every(
+    "case",
+    [
+        (["groups", 1], ["O", "A", "B", "O2", "C"]),
+        (["loads", 0], ["crank", "coupler", "rocker", "coupler2", "slider2", "frame"]),
+        (["loads", 2], ["slider2"]),
+    ],
+    ids=str,
+)
+def test_names_are_chosen_among_joints_links_or_sliders(case):
+    at, names = case
+    raw = added(added(groups.template("four-bar"), "slider"), "process force", "loads")
+    part = next(item for item in groups.parts_of({"chain": raw})["parts"] if item["at"] == at)
+    assert next(field["choices"] for field in part["fields"] if field["key"] == "on") == names
 
 
 def test_numbers_of_a_removed_group_are_named():
