@@ -129,7 +129,8 @@ def test_machine_that_cannot_be_assembled_is_a_ghost_until_it_can(page):
     problem = page.find(".problem")
     with pytest.raises(ks.KinetostaticsError) as told:
         scene("plain", coupler_length=0.25).solve(360)
-    assert problem.text == str(told.value)
+    angles = str(told.value).partition(". Change")[0]
+    assert problem.text.startswith(angles) and "56.4427 .. 123.557 deg" in angles
     assert page.script("return page.shown") is None
     assert "ghost" in page.find(".drawing > g").get_attribute("class")
     assert all("stale" in chart.get_attribute("class") for chart in page.all(".figure .chart"))
@@ -196,7 +197,9 @@ def test_crank_turns_under_the_pointer(page):
 def test_motor_speed_is_that_of_steady_running(page):
     page.slide("slider.mass", 700)
     page.script("page.curves.choose('motor speed', true)")
-    values = page.wait(lambda: page.script("return page.curves.runs[0] && page.curves.runs[0].quantities['motor speed'].values"))
+    values = page.wait(
+        lambda: page.script("return page.curves.runs[0] && page.curves.runs[0].quantities['motor speed'].values")
+    )
     variant = ks.load_case(CASE).variants[VARIANT]
     run = ks.drive.steady(scene(slider__mass=700.0), variant.motor, variant.flywheel, angles=360)
     np.testing.assert_allclose(values, run.motor_speed, rtol=1e-9)
