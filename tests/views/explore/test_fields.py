@@ -41,7 +41,7 @@ ENDS = {
     ("sawframe_2r63", "plain", "coupler_length"): (0.4, 4.0),
     ("pumpjack", "weights", "crank.centre.along"): (-2.46, 2.46),
     ("pumpjack", "weights", "crank_speed"): (-20.0, 0.0),
-    ("mower_drive", "full", "guide_offset"): (-0.04, 0.04),
+    ("mower_drive", "unbalanced", "guide_offset"): (-0.04, 0.04),
 }
 
 
@@ -50,7 +50,7 @@ def fields_of(case, variant):
     return {field["path"]: field for field in fields(ks.load_case(case).variants[variant].scene)}
 
 
-@pytest.mark.parametrize("case, variant", WORDS)
+@pytest.mark.parametrize(("case", "variant"), WORDS)
 def test_number_has_the_words_of_its_link(case, variant):
     found = fields_of(case, variant)
     for path, words in WORDS[case, variant].items():
@@ -58,13 +58,13 @@ def test_number_has_the_words_of_its_link(case, variant):
     assert len({(field["group"], field["label"]) for field in found.values()}) == len(found)
 
 
-@pytest.mark.parametrize("case, variant, path", ENDS)
+@pytest.mark.parametrize(("case", "variant", "path"), ENDS)
 def test_slider_has_ends_that_make_sense(case, variant, path):
     field = fields_of(case, variant)[path]
     assert [field[end] * field["factor"] for end in ("low", "high")] == pytest.approx(ENDS[case, variant, path])
 
 
-@pytest.mark.parametrize("case, variant", [*WORDS, ("toggle_press", "idle"), ("mower_drive", "full")])
+@pytest.mark.parametrize(("case", "variant"), [*WORDS, ("toggle_press", "idle"), ("mower_drive", "unbalanced")])
 def test_slider_reaches_its_number_in_round_steps(case, variant):
     for path, field in fields_of(case, variant).items():
         assert field["low"] <= field["value"] <= field["high"], path
@@ -76,5 +76,5 @@ def test_slider_reaches_its_number_in_round_steps(case, variant):
 
 
 def test_direction_of_a_guide_through_points_has_no_sliders():
-    scene = ks.load_case("mower_drive").variants["full"].scene
-    assert set(scene.parameters) - set(fields_of("mower_drive", "full")) == {"exact.x", "exact.y"}
+    scene = ks.load_case("mower_drive").variants["unbalanced"].scene
+    assert set(scene.parameters) - set(fields_of("mower_drive", "unbalanced")) == {"exact.x", "exact.y"}

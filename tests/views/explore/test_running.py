@@ -16,7 +16,8 @@ def test_speed_is_that_of_steady_running_of_state_and_reference():
     session = Session(CASE)
     states = {"state": {"variant": VARIANT, "values": {"slider.mass": 620.0}}, "reference": {"variant": "plain"}}
     *parts, last = asked(session, **states)
-    assert [part["running"] for part in parts] == ["state", "reference"] and not last["more"]
+    assert [part["running"] for part in parts] == ["state", "reference"]
+    assert not last["more"]
     for part, (variant, values) in zip(parts, [(VARIANT, {"slider.mass": 620.0}), ("plain", {})], strict=True):
         own = ks.load_case(CASE).variants[variant]
         run = ks.drive.steady(own.scene.varied(values), own.motor, own.flywheel, angles=360)
