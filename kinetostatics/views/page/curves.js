@@ -46,9 +46,11 @@ class Figure {
     this.remove.setAttribute("aria-label", `remove ${item.label}`);
     this.turns.setAttribute("aria-label", `${item.label}: ${plane ? "magnitude over the crank angle" : "hodograph"}`);
     const curve = (answer, quantity, style) => {
+      const before = this.curves?.find((other) => other.quantity === quantity && other.factor === item.factor);
+      if (before && before.name === style.name) return before;
       const own = { ...quantity, factor: item.factor }, { angle, period } = answer;
       const [x, y] = plane ? parts(own) : [angle, magnitudes(own)];
-      return { ...style, x, y, period, angle };
+      return { ...style, x, y, period, angle, quantity, factor: item.factor };
     };
     const curves = [curve(shown, item, { name: "shown", colour: NOW })];
     if (other && other.vector === item.vector) {
