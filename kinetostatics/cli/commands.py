@@ -286,14 +286,16 @@ def report(options):
 
 
 def explore(options):
-    from ..views.explore.groups import template
     from ..views.explore.server import serve
 
-    if (options.case is None) == (options.new is None):
-        raise ParameterError("explore: give a case, or --new with a mechanism to begin with")
     checks.require("--folder", files.folder_write_problem(options.folder) if options.folder else None)
+    subject = options.case
+    if options.new:
+        from ..views.explore.groups import template
+
+        subject = template(options.new)
     serve(
-        template(options.new) if options.new else options.case,
+        subject,
         options.variant,
         options.folder or ".",
         options.port,

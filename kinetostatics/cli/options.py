@@ -16,6 +16,9 @@ from .output import STDOUT, width
 
 DESIGN = 100
 """Size of a design with its outputs, bytes."""
+MAX_PORT = 65535
+"""Largest number of a port."""
+
 WIDTH_NOTE = (
     "Tables are as wide as the terminal, and 80 letters in a pipe or a file; COLUMNS=160 in the environment makes them "
     "wider."
@@ -55,6 +58,12 @@ def _count(text, size=None):
     if problem:
         raise argparse.ArgumentTypeError(problem.removeprefix("it "))
     return count
+
+
+def _port(text):
+    if not (text.isdecimal() and int(text[:9]) <= MAX_PORT):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 0 (a free port) to {MAX_PORT}, got {text!r}")
+    return int(text)
 
 
 def _angle(text):
@@ -193,9 +202,9 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
         (CASE[0], CASE[1] | {"nargs": "?"}),
         _option("--variant", "NAME", "shown first (the first of the case)"),
         ("--new", {"choices": STARTERS, "help": "in place of a case: a mechanism to begin with, whose groups change"}),
-        _option("--folder", "DIR", "the only folder into which the page saves (the present one)", _text, default="."),
-        _option("--port", "N", "port of the page on this machine (a free one)", int, default=0),
-        ("--no-browser", {"action": "store_true", "help": "print the address only"}),
+        _option("--folder", "DIR", "the only folder into which the page saves (the one you are in)", _text),
+        _option("--port", "N", "port of the page, which this machine alone reaches (a free one)", _port, default=0),
+        ("--no-browser", {"action": "store_true", "help": "print the address, open no browser"}),
         UNITS,
     ),
     "precision": (

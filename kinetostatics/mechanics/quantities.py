@@ -242,7 +242,11 @@ def largest_term(solution, name):
 
     Much smaller values may be rounding of cancelling terms.
     """
-    unit = unit_of(solution, name)
+    return largest_term_in(solution, unit_of(solution, name))
+
+
+def largest_term_in(solution, unit):
+    """Largest term in the sums of forces, N, or of moments, N m; 0 for other units."""
     if unit == "N m":
         return solution.largest_torque_term
     return solution.largest_force_term if unit == "N" else 0.0

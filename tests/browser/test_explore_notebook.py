@@ -1,38 +1,187 @@
-"""The explore page in a notebook of JupyterLab: curves follow a slider, the next cell has the scene that is shown."""
+"""Explore in a notebook of JupyterLab: curves follow a slider, and the next cell has the scene that is shown."""
 
 import json
 import os
 import re
 import subprocess
 import sys
+import threading
 import time
-from contextlib import suppress
 
 import pytest
 
 pytest.importorskip("anywidget")
 pytest.importorskip("jupyterlab")
 pytest.importorskip("selenium")
+from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.expected_conditions import staleness_of
 from selenium.webdriver.support.ui import WebDriverWait
 
 pytestmark = pytest.mark.slow
 TOKEN = "token-of-this-test"
 PATIENCE = 90.0
-"""Seconds in which a notebook starts and answers on a machine that is busy with other tests."""
-CELLS = [
-    "import kinetostatics as ks\nw = ks.explore('sawframe_2r63', variant='cam-circle')\nw",
-    "print('mass', w.scene.parameters['slider.mass'], w.state)",
-    "v = ks.explore(w.scene)\nv",
-    "w.state = {'variant': 'plain', 'values': {'slider.mass': 500.0}}",
-    "import os; os._exit(1)",
-]
+"""Seconds in which the kernel starts and answers on a machine that is busy with other tests."""
+CELLS = {
+    "show": "import kinetostatics as ks\nw = ks.explore('sawframe_2r63', variant='cam-circle')\nw",
+    "print": "import json\nprint('shown:', json.dumps([w.scene.parameters['slider.mass'], w.state]))",
+    "second": "v = ks.explore(w.scene)\nv",
+    "set": "w.state = {'variant': 'plain', 'values': {'crank_length': 0.25}}",
+    "end": "import os\nos._exit(1)",
+}
+CURVES = "return [...arguments[0].querySelectorAll('.chart .curve')].map((path) => path.getAttribute('d'))"
 
 
 def notebook(cells):
     kernel = {"name": "python3", "display_name": "Python 3", "language": "python"}
     empty = {"cell_type": "code", "metadata": {}, "execution_count": None, "outputs": []}
-    cells = [empty | {"id": f"cell{number}", "source": text} for number, text in enumerate(cells)]
-    return {"nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": kernel}, "cells": cells}
+    made = [empty | {"id": name, "source": text} for name, text in cells.items()]
+    return {"nbformat": 4, "nbformat_minor": 5, "metadata": {"kernelspec": kernel}, "cells": made}
+
+
+class Notebook:
+    """A notebook open in JupyterLab."""
+
+    def __init__(self, driver):
+        self.driver = driver
+        unready = (WebDriverException, IndexError)  # JupyterLab places cells one after another
+        self.wait = WebDriverWait(driver, PATIENCE, poll_frequency=0.1, ignored_exceptions=unready)
+
+    def cell(self, name):
+        return self.driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook .jp-CodeCell")[list(CELLS).index(name)]
+
+    def run(self, name):
+        self.wait.until(lambda _: self.choose(self.cell(name)))
+        ActionChains(self.driver).key_down(Keys.SHIFT).send_keys(Keys.ENTER).key_up(Keys.SHIFT).perform()
+
+    def choose(self, cell):
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'start'})", cell)
+        cell.find_element(By.CSS_SELECTOR, ".cm-content").click()
+        return True
+
+    def page(self, name):
+        """The explore page below a cell, when it shows curves."""
+        self.wait.until(lambda _: self.cell(name).find_elements(By.CSS_SELECTOR, ".explore .chart .curve"))
+        return self.cell(name).find_element(By.CSS_SELECTOR, ".explore")
+
+    def curves(self, page):
+        return self.driver.execute_script(CURVES, page)
+
+    def row(self, page, path):
+        return page.find_element(By.CSS_SELECTOR, f'.row[title="{path}"]')
+
+    def number(self, page, path):
+        return float(self.row(page, path).find_element(By.CSS_SELECTOR, "[type=number]").get_property("value"))
+
+    def drag(self, page, path, pixels):
+        """Drag a slider; the curves, when they have followed."""
+        slider, before = self.row(page, path).find_element(By.CSS_SELECTOR, "[type=range]"), self.curves(page)
+        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", slider)
+        ActionChains(self.driver).click_and_hold(slider).move_by_offset(pixels, 0).release().perform()
+        self.wait.until(lambda _: self.curves(page) != before)
+        return self.curves(page)
+
+    def printed(self):
+        """Mass and state that the next cell prints, when the page has put them into the widget."""
+        time.sleep(1.0)
+        self.run("print")
+        text = self.wait.until(lambda _: re.search(r"shown: (\[.*\])", self.cell("print").text))
+        return json.loads(text[1])
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory):
+    """Address of a JupyterLab with the notebook; it has its own settings and asks nobody for news."""
+    folder = tmp_path_factory.mktemp("lab")
+    (folder / "explore.ipynb").write_text(json.dumps(notebook(CELLS)), encoding="utf-8")
+    settings = folder / "settings" / "@jupyterlab" / "apputils-extension"
+    settings.mkdir(parents=True)
+    quiet = {"fetchNews": "false", "checkForUpdates": False}
+    (settings / "notification.jupyterlab-settings").write_text(json.dumps(quiet), encoding="utf-8")
+    own = {"JUPYTER_CONFIG_DIR": "config", "JUPYTER_DATA_DIR": "data", "JUPYTER_RUNTIME_DIR": "runtime"}
+    own |= {"IPYTHONDIR": "ipython", "JUPYTERLAB_SETTINGS_DIR": "settings", "JUPYTERLAB_WORKSPACES_DIR": "workspaces"}
+    environment = os.environ | {name: str(folder / place) for name, place in own.items()}
+    command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--ServerApp.port=0", "--allow-root"]
+    command += [f"--IdentityProvider.token={TOKEN}", f"--ServerApp.root_dir={folder}"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment) as server:
+        try:
+            places = (re.search(r"http://(?:localhost|127\.0\.0\.1):\d+/", line) for line in server.stderr)
+            address = next(place[0] for place in places if place)
+            threading.Thread(target=server.stderr.read, daemon=True).start()  # a full pipe would stop it
+            yield f"{address}lab/tree/explore.ipynb?token={TOKEN}"
+        finally:
+            server.terminate()
+
+
+@pytest.fixture(scope="module")
+def opened(driver, lab):
+    """The notebook in JupyterLab."""
+    driver.get_log("performance")
+    driver.get(lab)
+    found = Notebook(driver)
+    found.wait.until(lambda _: driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook .jp-CodeCell .cm-content"))
+    return found
+
+
+@pytest.fixture
+def shown(opened):
+    """The notebook with the page of a new widget below its first cell."""
+    before = opened.cell("show").find_elements(By.CSS_SELECTOR, ".explore")
+    opened.run("show")
+    for element in before:
+        opened.wait.until(staleness_of(element))
+    return opened, opened.page("show")
+
+
+def test_curves_follow_a_slider_and_the_next_cell_has_the_scene(shown):
+    notebook, page = shown
+    notebook.drag(page, "slider.mass", 25)
+    mass = notebook.number(page, "slider.mass")
+    assert mass > 600.0
+    assert notebook.printed() == [mass, {"variant": "cam-circle", "values": {"slider.mass": mass}}]
+
+
+def test_two_widgets_do_not_disturb_each_other(shown):
+    notebook, page = shown
+    notebook.run("second")
+    other = notebook.page("second")
+    before, others = notebook.curves(page), notebook.drag(other, "slider.mass", 25)
+    assert notebook.curves(page) == before
+    notebook.drag(page, "slider.mass", -25)
+    assert notebook.curves(other) == others
+
+
+def test_a_state_set_in_a_cell_is_shown(shown):
+    notebook, page = shown
+    before = notebook.curves(page)
+    notebook.run("set")
+    notebook.wait.until(lambda _: notebook.curves(page) != before)
+    assert page.find_element(By.CSS_SELECTOR, "[aria-selected=true]").text == "plain"
+    assert notebook.number(page, "crank_length") == 0.25
+
+
+def test_keys_in_the_page_do_not_edit_the_notebook(shown):
+    notebook, page = shown
+    before = notebook.number(page, "slider.mass")
+    slider = notebook.row(page, "slider.mass").find_element(By.CSS_SELECTOR, "[type=range]")
+    notebook.driver.execute_script("arguments[0].focus()", slider)
+    ActionChains(notebook.driver).send_keys("b", "d", "d", Keys.ARROW_RIGHT).perform()
+    notebook.wait.until(lambda _: notebook.number(page, "slider.mass") > before)
+    assert len(notebook.driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook .jp-CodeCell")) == len(CELLS)
+
+
+def test_nothing_is_loaded_from_elsewhere(shown, lab):
+    notebook, _ = shown
+    events = [json.loads(entry["message"])["message"] for entry in notebook.driver.get_log("performance")]
+    asked = [item["params"]["request"]["url"] for item in events if item["method"] == "Network.requestWillBeSent"]
+    assert any("anywidget" in url for url in asked)
+    own = (lab.partition("/lab/")[0], "data:", "blob:")
+    assert [url for url in asked if not url.startswith(own)] == []
+
+
+def test_a_page_whose_kernel_has_ended_says_it(shown):
+    notebook, page = shown
+    notebook.run("end")
+    notebook.wait.until(lambda _: "kernel has ended" in page.find_element(By.CSS_SELECTOR, ".problem").text)

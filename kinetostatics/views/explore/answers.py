@@ -4,6 +4,7 @@ The table comes row by row, so that a server can answer a drag between two rows.
 """
 
 from collections.abc import Iterator
+from functools import cache
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -76,16 +77,25 @@ class FigureRow(NamedTuple):
     problem: str = ""
 
 
+class Reference:
+    """Solution of a reference, with its extremes and means, each computed once."""
+
+    def __init__(self, solution):
+        self.solution = solution
+        self.ends = cache(lambda name: _ends(solution, name))
+        self.mean = cache(lambda label: _mean(label, solution))
+
+
 def quantity_rows(solution, names, reference=None) -> Iterator[QuantityRow]:
-    """Rows of the extremes of quantities, one a step; `reference` is a solution or None."""
+    """Rows of the extremes of quantities, one a step; `reference` is a `Reference` or None."""
     for name in names:
         row, own = _ends(solution, name)
         notes = [warning(solution, [own])]
-        if reference is None or name not in of_scene(reference):
+        if reference is None or name not in of_scene(reference.solution):
             yield QuantityRow(name, row, notes=tuple(filter(None, notes)))
             continue
-        other, found = _ends(reference, name)
-        notes.append(warning(reference, [found]))
+        other, found = reference.ends(name)
+        notes.append(warning(reference.solution, [found]))
         peaks = [max(map(abs, item.ends[::2])) for item in (other, row)]
         yield QuantityRow(name, row, peaks[0], ratio(*peaks), tuple(filter(None, notes)))
 
@@ -100,13 +110,13 @@ def figure_rows(solution, reference=None) -> Iterator[FigureRow]:
 
     The extrema are left out if they are many, as under a measured load.
     """
-    for label, (unit, mean) in MEANS.items():
-        value, problem = _mean(mean, solution)
-        other, _ = (np.nan, "") if reference is None else _mean(mean, reference)
+    for label, (unit, _) in MEANS.items():
+        value, problem = _mean(label, solution)
+        other, _ = (np.nan, "") if reference is None else reference.mean(label)
         yield FigureRow(label, unit, value, other, ratio(other, value), problem)
     if reference is None:
         return
-    found = Comparison(reference, solution)
+    found = Comparison(reference.solution, solution)
     plain, matched = found.torque_extremes
     if plain.value.size <= MAX_LISTED:
         rows = zip(plain.value, matched, found.torque_extremum_ratios, strict=True)
@@ -114,8 +124,9 @@ def figure_rows(solution, reference=None) -> Iterator[FigureRow]:
             yield FigureRow(f"{EXTREMUM} {number}", "N m", float(value), float(other), float(share))
 
 
-def _mean(mean, solution):
+def _mean(label, solution):
     """Mean of a solution, or NaN and the reason."""
+    _, mean = MEANS[label]
     try:
         return float(mean(solution)), ""
     except KinetostaticsError as error:

@@ -1,6 +1,7 @@
 """Sliders and number fields: for each parameter of a scene its group, shown unit, ends and digits."""
 
 import math
+import re
 
 import numpy as np
 
@@ -11,7 +12,24 @@ UNITS = {"rad": (180.0 / math.pi, "deg"), "rad/s": (30.0 / math.pi, "rpm")}
 """Factor and unit shown for units that people do not read."""
 STEPS_OF_A_SLIDER = 400
 """Least number of steps of a slider between its ends."""
-DRIVE = ("crank_speed", "crank_acceleration", "sense")
+SHORTEST = 0.2
+"""Lower end of the slider of a link's length, over its value: no link has length 0."""
+UNKNOWN_REACH = 1.0
+"""End of the slider of a number 0, SI, if the machine has no number of its unit."""
+DRIVE = ("crank_speed", "crank_acceleration")
+OF_A_GROUP = re.compile(r"(\w+?)_(\w*?)(\d*)")
+"""Number of a link or guide: "coupler_length2" is the length of "coupler2"."""
+COORDINATES = re.compile(r".*(along|across|offset\d*|\.[xy])")
+"""Lengths that may be on both sides of 0."""
+WORDS = {
+    "centre.along": "mass centre along",
+    "centre.across": "mass centre across",
+    "inertia": "moment of inertia",
+    "mu": "coefficient of friction",
+}
+"""Labels of numbers by the end of their path."""
+HIDDEN = re.compile(r"sense|exact\d*\.[xy]")
+"""Parameters without a slider: a direction (x, y) has length 1, so neither part may change alone."""
 
 
 def shown_unit(unit):
@@ -21,45 +39,76 @@ def shown_unit(unit):
 
 
 def fields(scene):
-    """Fields of all numbers of a scene, in its order: dicts with path, group, label, value, unit, factor and ends."""
-    found, values, units = [], scene.parameters, scene.units
-    plain = {path: value for path, value in values.items() if np.ndim(value) == 0}
-    largest: dict[str, float] = {}
+    """Fields of all numbers of a scene by group: dicts with path, group, label, value, unit, factor, ends and step."""
+    units = scene.units
+    plain = {path: float(value) for path, value in scene.parameters.items() if np.ndim(value) == 0}
+    links = {path.removesuffix(".mass") for path in plain if path.count(".") == 1 and path.endswith(".mass")}
+    found: dict[str, list[dict]] = {}
     for path, value in plain.items():
-        largest[units[path]] = max(largest.get(units[path], 0.0), abs(float(value)))
-    for path, value in plain.items():
-        if path == "sense":
+        if HIDDEN.fullmatch(path):
             continue
+        group, label = words(path, links)
         factor, unit = shown_unit(units[path])
-        low, high = ends(float(value), units[path], largest[units[path]])
+        low, high = ends(path, value, plain, units)
         step = round_step((high - low) * factor / STEPS_OF_A_SLIDER)
-        part, dot, name = path.partition(".")
-        group = part if dot else "drive" if path in DRIVE else "lengths"
-        label = (name if dot else path).replace("_", " ").replace(".", " ")
-        decimals = max(0, -math.floor(math.log10(step)))
-        found.append(
+        found.setdefault(group, []).append(
             {
                 "path": path,
                 "group": group.replace("_", " "),
                 "label": label,
-                "value": float(value),
+                "value": value,
                 "unit": pretty_unit(unit),
                 "factor": factor,
-                "low": math.floor(low * factor / step) * step / factor,
-                "high": math.ceil(high * factor / step) * step / factor,
+                "low": math.floor(low * factor / step + 1e-9) * step / factor,
+                "high": math.ceil(high * factor / step - 1e-9) * step / factor,
                 "step": step / factor,
-                "decimals": decimals,
+                "decimals": max(0, -math.floor(math.log10(step))),
             }
         )
-    return found
+    return [field for group in found.values() for field in group]
 
 
-def ends(value, unit, largest):
-    """Ends of the slider of a number: zero to twice its value; of zero, as far as the largest number of its unit."""
+def words(path, links):
+    """Group of a parameter, a link if it belongs to one, and its label."""
+    part, _, name = path.partition(".")
+    if path in DRIVE:
+        return "drive", path.replace("_", " ")
+    match = OF_A_GROUP.fullmatch(part)
+    if part not in links and match and (match[1] == "guide" or match[1] + match[3] in links):
+        part, name = match[1] + match[3], f"{match[2]}.{name}".strip(".")
+    if not name:
+        part, name = "lengths", path
+    for end, word in WORDS.items():
+        if name == end or name.endswith("." + end):
+            name = name.removesuffix(end) + word
+    return part, name.replace("_", " ").replace(".", " ")
+
+
+def ends(path, value, values, units):
+    """Ends of the slider of a number, SI: of an angle half a turn; from 0 to twice the value, or both sides of 0."""
+    unit, dimension = units[path], dimension_name(units[path])
+    if dimension == "angle":
+        return min(-math.pi, value), max(math.pi, value)
+    if value and COORDINATES.fullmatch(path):
+        return -2.0 * abs(value), 2.0 * abs(value)
     if value:
-        return min(0.0, 2.0 * value), max(0.0, 2.0 * value)
-    reach = math.pi if unit == "rad" else largest or 1.0
-    return (0.0, reach) if unit in ("kg", "kg m2", "kg m^2") else (-reach, reach)
+        low = SHORTEST * value if "_length" in path else 0.0
+        return (low, 2.0 * value) if value > 0 else (2.0 * value, 0.0)
+
+    def largest(wanted):
+        return max((abs(values[other]) for other in values if dimension_name(units[other]) == wanted), default=0.0)
+
+    length, speed, own = largest("length"), largest("angular speed"), largest(dimension) if dimension else 0.0
+    reach = {
+        "mass": own,
+        "inertia": own or largest("mass") * length**2,
+        "length": 0.5 * own,
+        "angular acceleration": 0.1 * speed**2,
+    }.get(dimension, own)
+    if unit == "N/m**3" and length:
+        reach = largest("stiffness") / length**2
+    reach = reach or UNKNOWN_REACH
+    return (0.0 if dimension in ("mass", "inertia", "stiffness") else -reach), reach
 
 
 def round_step(step):

@@ -113,11 +113,11 @@ def handle_data(solution):
     }
 
 
-def dragged(solution, name, x, y, index, snap=True):
+def dragged(solution, name, x, y, index, snap=True, step=None):
     """Values by path that bring a point to (x, y), m, at the crank angle `index` of a solution, rounded.
 
-    With `snap` to steps of about 1/200 of the machine's size, and of 1 degree; else to 1/100 of these. A number that
-    changes by less than half a step stays, as does one without a value because the mechanism is open there.
+    With `snap` to a step, m, by default about 1/200 of the machine's size, and to 1 degree; else to 1/100 of these. A
+    number that changes by less than half a step stays, as does one without a value because the mechanism is open there.
 
     Raises
     ------
@@ -140,8 +140,8 @@ def dragged(solution, name, x, y, index, snap=True):
     unit = solution.places[name].rule.unit
     share = 1.0 if snap else 1.0 / FINE
     if unit == "m":
-        step = share * snap_step(points.size)
-        new = [_rounded(*values, step) for values in zip(old, new, strict=True)]
+        step = snap_step(points.size) if step is None else step
+        new = [_rounded(*values, share * step) for values in zip(old, new, strict=True)]
     elif unit == "rad":
         new = [_rounded(*old, *new, share * ANGLE_STEP, DEGREE)]
     else:  # a direction

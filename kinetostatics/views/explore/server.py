@@ -18,7 +18,6 @@ from pathlib import Path
 
 from ...casefile.case import Case, load_case
 from ...errors import MissingLibraryError, ParameterError
-from ...numbers import checks, files
 from ...solution.scene import Scene
 from ..page import bundle, source
 from .conversation import Conversation
@@ -80,7 +79,6 @@ class Gate:
 def application(gate, session_of_page, hosts):
     """The Tornado application: the page, its module and style, its socket, and the reports that it made."""
     require_tornado()
-    from tornado.iostream import StreamClosedError
     from tornado.web import Application, HTTPError, RequestHandler
     from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
@@ -125,7 +123,7 @@ def application(gate, session_of_page, hosts):
 
         def initialize(self):
             self.conversation: Conversation | None = None
-            self.sent = asyncio.ensure_future(asyncio.sleep(0))
+            self.sent: asyncio.Future | None = None
 
         def prepare(self):  # Tornado lets requests without an origin pass
             if self.request.host not in hosts or self.request.headers.get("Origin") != f"http://{self.request.host}":
@@ -146,8 +144,8 @@ def application(gate, session_of_page, hosts):
                     return
                 self.conversation = Conversation(session_of_page(), self.send)
             self.conversation.take(request)
-            with contextlib.suppress(WebSocketClosedError, StreamClosedError):
-                await self.sent
+            if self.sent is not None:
+                await asyncio.wait([self.sent])
 
         def send(self, header, buffers):
             if header["kind"] == "open":
@@ -156,6 +154,7 @@ def application(gate, session_of_page, hosts):
                 header["link"] = link(header["report"])
             with contextlib.suppress(WebSocketClosedError):
                 self.sent = self.write_message(framed(header, buffers), binary=True)
+                self.sent.add_done_callback(lambda sent: sent.cancelled() or sent.exception())  # the page has gone
 
         def on_close(self):
             if self.conversation:
@@ -218,7 +217,6 @@ def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
         Called with the address of the page.
     """
     require_tornado()
-    checks.require("explore", files.folder_write_problem(folder) if folder is not None else None)
     what = what if isinstance(what, Case | Scene | dict) else load_case(what)
     Session(what, variant, folder)  # a wrong variant ends the command before it serves
     handler, terminated = signal.getsignal(signal.SIGTERM), asyncio.Event()

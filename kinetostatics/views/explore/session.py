@@ -16,15 +16,15 @@ import numpy as np
 
 from ...casefile.case import Case, load_case
 from ...cycle.rounding import FLOOR, zeroed
-from ...errors import KinetostaticsError, ParameterError
-from ...mechanics.quantities import components, largest_term, of_scene
+from ...errors import AssemblyError, KinetostaticsError, ParameterError
+from ...mechanics.quantities import largest_term_in, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
-from ..canvas import display_unit, ordinary_size
+from ..canvas import display_unit, drawn_limit, ordinary_size
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
-from . import answers, fields, groups, keeping, searching
+from . import answers, fields, groups, keeping, running, searching
 from .handles import dragged, handle_data
 
 MAX_SCENES = 32
@@ -122,10 +122,10 @@ class Session:
         return self._scenes[key]
 
     def reference(self, state):
-        """Solution of the state of the reference, kept with its extremes until another one is asked for."""
+        """The `Reference` of a state, kept until another one is asked for."""
         scene = self.scene(state)
         if self._reference[0] is not scene:
-            self._reference = scene, scene.solve(answers.COUNT)
+            self._reference = scene, answers.Reference(scene.solve(answers.COUNT))
         return self._reference[1]
 
 
@@ -164,6 +164,8 @@ def is_number(value):
 
 def problem_text(error):
     """Sentence on an error for the page; one that is not the user's is named as a fault of the library."""
+    if isinstance(error, AssemblyError):
+        return f"{error.condition}; change the lengths"
     if isinstance(error, KinetostaticsError):
         return str(error)
     return f"this is a fault of the library, please report it: {type(error).__name__}: {error}"
@@ -218,7 +220,8 @@ def describe(session, request):
         for name, item in of_scene(scene).items()
         if item.kind in KINDS
     ]
-    return {"parameters": fields.fields(scene), "quantities": quantities}
+    drive = running.motor_of(session, {"variant": session.first} | request["state"])[0] is not None
+    return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
 
 
 def count_of(request):
@@ -242,7 +245,7 @@ def look(session, request):
         "angle": np.degrees(solution.crank_angle),
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
-        "quantities": {name: curve(solution, name) for name in dict.fromkeys(show) if name in known},
+        "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
         **handle_data(solution),
     }
 
@@ -250,15 +253,16 @@ def look(session, request):
 def drag(session, request):
     """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
 
+    `step` is the snapping step, m; the page keeps it while a point is dragged.
     Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
     """
-    state, place = request["state"], [request.get(key) for key in ("x", "y", "index")]
-    if not all(map(is_number, place)):
-        raise ParameterError(f"explore: x, y and index must be numbers, got {checks.shown(place)}")
-    x, y, index = place
+    state, place = request["state"], [request.get(key) for key in ("x", "y", "index", "step")]
+    if not all(map(is_number, place)) or not place[3] > 0:
+        raise ParameterError(f"explore: x, y, index and step must be numbers, got {checks.shown(place)}")
+    x, y, index, step = place
     solution = session.scene(state).solve(count_of(request), on_gap="nan")
     at = float(x), float(y), int(index) % solution.crank_angle.size
-    moved = dragged(solution, request.get("handle"), *at, snap=request.get("snap") is not False)
+    moved = dragged(solution, request.get("handle"), *at, request.get("snap") is not False, step)
     own = session.base(state).parameters
     values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
     new = state | {"values": values}
@@ -269,19 +273,22 @@ def drag(session, request):
         return {"state": new, "problem": str(error)}
 
 
-def curve(solution, name):
+def curve(solution, known):
     """Values of a quantity over the angles of a solution, (parts, N), SI, with the unit in which to show them."""
-    known = of_scene(solution)[name]
-    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term(solution, name)))
-    values = zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
+    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term_in(solution, known.unit)))
+    parts = known.read(solution)
+    values = np.stack([np.broadcast_to(part, shape) for part in (parts if known.vector else (parts,))])
+    values = zeroed(values, rounding)
     size = np.hypot(*values) if known.vector else values
     factor, unit = display_unit(known.unit, [size])
+    limit = drawn_limit([np.abs(size)])
     return {
         "label": known.label,
         "unit": pretty_unit(unit),
         "factor": factor,
         "decimals": decimals(factor * ordinary_size([size])),
         "vector": known.vector,
+        "sight": factor * limit if np.isfinite(limit) else None,
         "values": values,
     }
 
@@ -290,6 +297,7 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
+    "running": running.running,
     "drag": drag,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,
@@ -303,5 +311,5 @@ ANSWERS = {
     "report": keeping.report,
 }
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
-OF_NEWEST: tuple[str, ...] = ("ask", "sensitivities", "tolerances")
+OF_NEWEST: tuple[str, ...] = ("ask", "running", "sensitivities", "tolerances")
 """Kinds of requests whose answers are dropped when a newer state is asked for."""

@@ -10,8 +10,6 @@ import numpy as np
 
 IMPORT = re.compile(r'^import\b[^"]*"\./([^"]+)";\n', re.M)
 """A module's import of a file beside it."""
-NAME = re.compile(r"^(?:export )?(?:async )?(?:class|function|const|let) (\w+)", re.M)
-"""The first name of a declaration of a module."""
 
 
 def source(name):
@@ -19,15 +17,16 @@ def source(name):
     return resources.files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
-def bundle(entry):
+def bundle(entry, read=source):
     """Text of one ES module: a script and all that it imports, each once, before what imports it.
 
     Exports of the entry stay; modules that it imports share its names, so two of them must not declare the same one.
+    `read(name)` gives the text of a script.
     """
     texts: dict[str, str] = {}
 
     def add(name):
-        text = source(name)
+        text = read(name)
         for other in IMPORT.findall(text):
             if other not in texts:
                 add(other)
@@ -35,9 +34,6 @@ def bundle(entry):
         texts[name] = text if name == entry else re.sub(r"^export ", "", text, flags=re.M)
 
     add(entry)
-    names = [name for text in texts.values() for name in NAME.findall(text)]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    assert not twice, f"{entry}: declared twice: {', '.join(twice)}"
     return "\n".join(texts.values())
 
 

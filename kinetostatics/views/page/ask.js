@@ -6,20 +6,17 @@ import { SensitivityBars } from "./bars.js";
 import { Uncertainties } from "./uncertainties.js";
 
 const DELAY = 120; // ms without a change, until questions follow
-const EXTREMES = {
-  smallest: "smallest", smallest_at: "at [°]", largest: "largest", largest_at: "at [°]", range: "range",
-  reference: "largest size, reference", ratio: "ratio",
-};
+const EXTREMES = { smallest: "smallest", largest: "largest", reference: "reference", ratio: "ratio", range: "range" };
 const FIGURES = { value: "now", reference: "reference", ratio: "ratio" };
 
-// A table of texts, rows by label and unit.
+// A table of texts; below an extreme stands its crank angle.
 class Numbers {
   constructor(parent, caption, columns) {
     this.columns = columns;
     this.table = made(made(parent, "div", { class: "wide" }), "table");
     made(this.table, "caption", {}, caption);
     const head = made(made(this.table, "thead"), "tr");
-    for (const title of ["", "unit", ...Object.values(columns)]) made(head, "th", { scope: "col" }, title);
+    for (const title of ["", ...Object.values(columns)]) made(head, "th", { scope: "col" }, title);
     this.body = made(this.table, "tbody");
   }
 
@@ -27,30 +24,31 @@ class Numbers {
     this.body.replaceChildren();
     for (const row of rows) {
       const line = made(this.body, "tr");
-      made(line, "th", { scope: "row" }, row.label);
-      for (const text of [row.unit, ...Object.keys(this.columns).map((name) => row[name])]) made(line, "td", {}, text);
+      made(line, "th", { scope: "row" }, row.unit ? `${row.label} [${row.unit}]` : row.label);
+      for (const name of Object.keys(this.columns)) {
+        const cell = made(line, "td", { "data-column": name }, row[name]), at = row[`${name}_at`];
+        if (at) made(cell, "small", {}, `at ${at}°`);
+      }
     }
   }
 }
 
-// `page`: {ask(kind, fields, onanswer) -> stop, state(), reference(), shown(), ends(path), values(), focus(path),
-// take(values), band(name, band or null)}: state of the reference or null, names of the quantities that are shown,
-// ends and values of parameters in SI.
 export class Ask {
-  constructor(parent, page) {
-    Object.assign(this, { page, timer: null, stops: [] });
-    this.root = made(parent, "div", { class: "ask" });
+  // `explore`: the page, as explore.js describes it.
+  constructor(parent, explore) {
+    Object.assign(this, { root: parent, explore, timer: null, stops: [] });
     const numbers = this.section("Numbers", true);
-    this.extremes = new Numbers(numbers, "Extremes over the period", EXTREMES);
+    this.extremes = new Numbers(numbers, "Extremes, and largest size in the reference", EXTREMES);
     this.figures = new Numbers(numbers, "Means and torque extrema", FIGURES);
     this.notes = made(numbers, "p", { class: "notes" });
     const change = this.section("What should I change?");
-    this.choice = new OutputChoice(change, "of", () => this.follow());
-    this.bars = new SensitivityBars(change, (path) => page.focus(path));
-    const tolerances = this.section("Tolerances");
-    this.uncertainties = new Uncertainties(tolerances, () => this.follow());
-    const search = this.section("Optimise");
-    this.search = new Search(search, page);
+    this.choice = new OutputChoice(change, () => this.follow());
+    this.bars = new SensitivityBars(change, (path) => explore.focus(path));
+    this.uncertainties = new Uncertainties(this.section("Tolerances"), () => this.follow());
+    this.search = new Search(this.section("Optimise"), explore);
+    explore.onknown((answer) => this.describe(answer));
+    explore.onshown(() => this.changed());
+    explore.oncompared(() => this.changed());
   }
 
   section(title, open = false) {
@@ -69,51 +67,42 @@ export class Ask {
     this.search.describe(this.fields, quantities);
   }
 
-  // Another machine is shown: numbers are grey until they belong to it.
+  // Another machine is shown, or none: numbers are grey until they belong to it.
   changed() {
-    this.stops.splice(0).forEach((stop) => stop());
-    this.stale(true);
-    clearTimeout(this.timer);
+    this.drop();
+    for (const answer of [this.extremes.table, this.figures.table, this.bars.root]) answer.classList.add("stale");
+    for (const name of this.explore.names) this.explore.band(name, null);
     this.timer = setTimeout(() => this.follow(), DELAY);
   }
 
-  // Nothing is shown that numbers could belong to.
-  blank() {
-    this.changed();
-    clearTimeout(this.timer);
-  }
-
-  stale(wanted) {
-    const answers = [this.extremes.table, this.figures.table, this.bars.root];
-    for (const answer of answers) answer.classList.toggle("stale", wanted);
-    if (wanted) for (const name of this.page.shown()) this.page.band(name, null);
-  }
-
-  isOpen(item) { return item.closest("details").open; }
-
-  follow() {
+  // Await no answers any more.
+  drop() {
     clearTimeout(this.timer);
     this.stops.splice(0).forEach((stop) => stop());
-    const state = this.page.state();
-    if (!state || !this.fields) return;
-    const show = this.page.shown();
-    if (this.isOpen(this.notes)) this.askNumbers(state, show);
-    if (this.isOpen(this.bars.root)) this.askBars(state);
-    if (this.isOpen(this.uncertainties.root)) this.askBands(state, show);
+  }
+
+  follow() {
+    this.drop();
+    const { shown, names, reference } = this.explore, isOpen = (item) => item.closest("details").open;
+    if (!shown || !this.fields) return;
+    const { state } = shown, show = names.filter((name) => name in shown.quantities);
+    if (isOpen(this.notes)) this.askNumbers({ state, show, reference: reference ? reference.state : null });
+    if (isOpen(this.bars.root)) this.askBars(state);
+    if (isOpen(this.uncertainties.root)) this.askBands(state, show);
   }
 
   // Ask and collect the parts of the answer; `ondone(parts, problem)` after the last.
   collect(kind, fields, ondone) {
     const parts = [];
-    this.stops.push(this.page.ask(kind, fields, (answer) => {
+    this.stops.push(this.explore.requests.ask(kind, fields, (answer) => {
       if (answer.problem) ondone(parts, answer.problem);
       else if (answer.more) parts.push(answer);
       else ondone(parts, "");
     }));
   }
 
-  askNumbers(state, show) {
-    this.collect("ask", { state, reference: this.page.reference(), show }, (parts, problem) => {
+  askNumbers(fields) {
+    this.collect("ask", fields, (parts, problem) => {
       const [extremes, figures] = ["extremes", "figure"].map((kind) => parts.map((part) => part[kind]).filter(Boolean));
       this.notes.textContent = [...new Set([problem, ...extremes.flatMap(({ notes }) => notes),
         ...figures.map((figure) => figure.problem)])].filter(Boolean).join("\n");
@@ -132,17 +121,17 @@ export class Ask {
   }
 
   askBands(state, show) {
-    const { spreads, wanted } = this.uncertainties;
-    if (!wanted && spreads) {
-      for (const name of show) this.page.band(name, null);
-      return;
-    }
+    const { spreads, wanted } = this.uncertainties, { shown } = this.explore;
+    if (!wanted) for (const name of show) this.explore.band(name, null);
+    if (!wanted && spreads) return;
     this.collect("tolerances", { state, spreads, show: wanted ? show : [] }, ([first, ...parts], problem) => {
-      const bands = parts.map(({ band }) => band);
-      this.uncertainties.say(problem, bands.map(({ note }) => note));
+      this.uncertainties.say(problem, parts.map(({ band }) => band.note));
       if (problem) return;
       this.uncertainties.show(first.spreads);
-      for (const band of bands) this.page.band(band.name, band);
+      for (const { band } of parts) {
+        const { factor } = shown.quantities[band.name], scaled = (side) => side.map((value) => factor * value);
+        this.explore.band(band.name, { x: shown.angle, low: scaled(band.low), high: scaled(band.high) });
+      }
     });
   }
 }

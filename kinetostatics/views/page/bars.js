@@ -1,5 +1,5 @@
 // Bars of sensitivities: change of a number in percent for one percent of each parameter, the largest first.
-import { made } from "./html.js";
+import { button, made } from "./html.js";
 import { element } from "./svg.js";
 
 const SHOWN = 12, LEAST = 1e-3; // bars at first; share of the largest below which a bar is no use
@@ -15,8 +15,7 @@ export class SensitivityBars {
     this.root = made(parent, "div", { class: "bars" });
     this.head = made(this.root, "p", { role: "status" });
     this.list = made(this.root, "ul");
-    this.more = made(this.root, "button", { type: "button" });
-    this.more.addEventListener("click", () => { this.all = !this.all; this.draw(); });
+    this.more = button(this.root, "", () => { this.all = !this.all; this.draw(); });
     const zero = made(this.root, "details", { class: "zero" });
     made(zero, "summary", {}, "Parameters that are zero now");
     this.zeros = made(zero, "ul");
@@ -47,24 +46,24 @@ export class SensitivityBars {
 
   // A parameter as a button that leads to its slider.
   entry(list, { path }, text) {
-    const button = made(made(list, "li"), "button", { type: "button", "data-path": path, title: "Go to its slider" });
-    made(button, "span", { class: "name" }, named(this.fields.get(path), path));
-    button.addEventListener("click", () => this.onchoose(path));
-    made(button, "span", { class: "amount" }, text);
-    return button;
+    const words = { "data-path": path, title: "Go to its slider" };
+    const found = button(made(list, "li"), "", () => this.onchoose(path), words);
+    made(found, "span", { class: "name" }, named(this.fields.get(path), path));
+    made(found, "span", { class: "amount" }, text);
+    return found;
   }
 
   // Full to the right of the middle for more, hollow to the left for less.
   bar(row, length) {
-    const button = this.entry(this.list, row, percent(row.share)), size = Math.abs(length) * WIDE / 2;
-    button.title = `${row.slope}. Go to its slider`;
-    const svg = element("svg", button, { viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" });
+    const found = this.entry(this.list, row, percent(row.share)), size = Math.abs(length) * WIDE / 2;
+    found.title = `${row.slope}. Go to its slider`;
+    const svg = element("svg", found, { viewBox: `0 0 ${WIDE} ${HIGH}`, "aria-hidden": "true" });
     svg.setAttribute("preserveAspectRatio", "none");
     element("rect", svg, {
       x: length > 0 ? WIDE / 2 : WIDE / 2 - size, y: 2, width: size, height: HIGH - 4,
       class: length > 0 ? "more" : "less",
     });
     element("path", svg, { d: `M${WIDE / 2} 0V${HIGH}` });
-    button.insertBefore(svg, button.children[1]);
+    found.insertBefore(svg, found.children[1]);
   }
 }

@@ -4,7 +4,7 @@
 import { element, put, short } from "./svg.js";
 
 const LEFT = 58, RIGHT = 16, TOP = 26, BOTTOM = 38;
-const CLOSEST_TICKS = 42; // pixels
+const CLOSEST_TICKS = [45, 30]; // pixels, along x and y
 const AIR = 0.06; // of the range, beyond the curves
 const USED = 0.6; // share of the range below which it shrinks
 const TURN_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360];
@@ -25,7 +25,7 @@ function multiples(step, [low, high]) {
 
 function tickText(value, step) {
   const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-  if (value !== 0 && (Math.abs(value) >= 1e6 || decimals > 5)) return Number(value.toPrecision(6)).toExponential();
+  if (Math.abs(value) >= 1e6 || decimals > 5) return value ? Number(value.toPrecision(6)).toExponential() : "0";
   return (value || 0).toFixed(decimals);
 }
 
@@ -151,8 +151,8 @@ export class Chart {
 
   // Steps of the ticks along both axes.
   steps() {
-    const { across, plane, period } = this, step = roundStep(CLOSEST_TICKS / this.scaleY);
-    if (plane) return [step, step];
+    const { across, plane, period } = this, step = roundStep(CLOSEST_TICKS[1] / this.scaleY);
+    if (plane) return [roundStep(CLOSEST_TICKS[0] / this.scaleX), step];
     const turn = TURN_STEPS.find((degrees) => degrees >= spanOf(across) / 4.5);
     return [turn && spanOf(across) < period ? turn : period / 4, step];
   }

@@ -50,9 +50,11 @@ export class Requests {
     return () => this.waiting.delete(id);
   }
 
-  // Ask for the machine of a state, or of a drag: `onlook(answer)` gets the answers, in order.
+  // Ask for the machine of a state, or of a drag: `onlook(answer, fields)` gets the answers, in order.
   look(kind, fields) {
-    if (this.underway === null) this.underway = this.send(kind, fields); else this.next = [kind, fields];
+    if (this.underway !== null) { this.next = [kind, fields]; return; }
+    this.asked = fields;
+    this.underway = this.send(kind, fields);
   }
 
   // Is a look or a drag under way?
@@ -66,10 +68,10 @@ export class Requests {
 
   receive(answer) {
     if (answer.id === this.underway) {
-      const { next } = this;
+      const { asked, next } = this;
       this.underway = this.next = null;
       if (next) this.look(...next);
-      this.onlook(answer);
+      this.onlook(answer, asked);
     } else if (this.waiting.has(answer.id)) {
       const told = this.waiting.get(answer.id);
       if (!answer.more) this.waiting.delete(answer.id);

@@ -4,7 +4,8 @@ import { Chart } from "./chart.js";
 import { button, checkbox, made } from "./html.js";
 
 export const NOW = "#1f4e79", BEFORE = "#5b6873";
-const DASHES = "5 3", HEIGHT = 196;
+const DASHES = "5 3", HEIGHT = 190;
+const RUNNING = "motor speed"; // of a case with a drive; it comes after the curves
 
 // Values of a quantity in its shown unit, of a vector its magnitude.
 function magnitudes({ values, vector, factor }) {
@@ -23,10 +24,13 @@ class Figure {
   constructor(parent, name, plane, { onchoose, onremove, onplane }) {
     Object.assign(this, { name, plane, element: made(parent, "figure", { class: "figure" }) });
     const caption = made(this.element, "figcaption");
-    this.values = made(caption, "span", { class: "values" });
+    this.label = made(caption, "b");
+    this.values = made(caption, "output", { class: "values" });
+    this.before = made(caption, "output", { class: "values before" });
     this.turns = button(caption, plane ? "over the angle" : "hodograph", onplane, { class: "plain" });
     this.remove = button(caption, "×", onremove, { class: "plain remove" });
     this.chart = new Chart(made(this.element, "div", { class: "place" }), { plane, height: HEIGHT });
+    this.words = made(this.element, "p", { class: "words" });
     this.chart.onchoose = onchoose;
   }
 
@@ -37,6 +41,7 @@ class Figure {
     if (!item) return;
     const label = item.vector && !plane ? `|${item.label}|` : item.label;
     this.item = { ...item, label };
+    this.label.textContent = `${label} [${item.unit || "1"}]`;
     this.turns.hidden = !item.vector;
     this.remove.setAttribute("aria-label", `remove ${item.label}`);
     this.turns.setAttribute("aria-label", `${item.label}: ${plane ? "magnitude over the crank angle" : "hodograph"}`);
@@ -55,30 +60,37 @@ class Figure {
     chart.stale(false);
   }
 
+  say(text) {
+    if (text) this.stale();
+    this.words.textContent = text;
+  }
+
   stale() {
     this.chart.stale(true);
-    this.values.textContent = "";
+    for (const values of [this.values, this.before]) values.textContent = "";
   }
 
   // Values at a crank angle, from the same answer as the curves.
-  follow(index, degrees) {
+  follow(degrees) {
     if (!this.item || this.element.hidden) return;
     this.chart.cursor(degrees);
-    const { decimals, unit } = this.item;
-    const texts = this.curves.map(({ x, y, angle, period }) => {
-      const place = angle === this.curves.at(-1).angle ? index : Math.round((degrees % period) * y.length / period) % y.length;
+    const { decimals } = this.item;
+    const texts = this.curves.map(({ x, y, period }) => {
+      const place = Math.round((degrees % period) * y.length / period) % y.length;
       const value = this.plane ? [x[place], y[place]] : [y[place]];
       return value.map((part) => shown(part, decimals)).join(", ") || "none";
     });
     const [now, before] = texts.reverse();
-    this.values.textContent = before === undefined ? `${now} ${unit}` : `${now} ${unit} (${before})`;
+    this.values.textContent = now;
+    this.before.textContent = before ?? "";
   }
 }
 
 export class Curves {
   // `onchosen()` is called when other quantities are chosen, `onchoose(degrees)` when a crank angle is.
   constructor(parent, { onchosen, onchoose }) {
-    Object.assign(this, { onchosen, onchoose, figures: new Map(), names: [], planes: new Set() });
+    Object.assign(this, { onchosen, onchoose, figures: new Map(), chosen: [], planes: new Set() });
+    Object.assign(this, { answers: [null, null], runs: [null, null] });
     const bar = made(parent, "div", { class: "bar" });
     this.choice = made(bar, "details", { class: "choice" });
     made(this.choice, "summary", {}, "Curves");
@@ -91,14 +103,21 @@ export class Curves {
     });
   }
 
-  // Quantities that can be chosen, with a box to search them.
-  offer(quantities) {
+  // Names of the library's quantities that are shown.
+  get names() { return this.chosen.filter((name) => name !== RUNNING); }
+
+  get running() { return this.drive && this.chosen.includes(RUNNING); }
+
+  // Quantities that can be chosen, with a box to search them; the motor's speed with a drive.
+  offer(known, drive) {
+    this.drive = drive;
+    const quantities = drive ? [...known, { name: RUNNING, label: RUNNING, unit: "rpm" }] : known;
     const { choice } = this, panel = document.createElement("div");
     panel.className = "panel";
     const search = made(panel, "input", { type: "search", placeholder: "search quantities", "aria-label": "search quantities" });
     const list = made(panel, "div", { class: "list" });
     this.boxes = new Map(quantities.map(({ name, label, unit }) => {
-      const input = checkbox(list, `${label} [${unit || "1"}]`, this.names.includes(name), (wanted) => this.choose(name, wanted));
+      const input = checkbox(list, `${label} [${unit || "1"}]`, this.chosen.includes(name), (wanted) => this.choose(name, wanted));
       return [name, input];
     }));
     search.addEventListener("input", () => {
@@ -110,7 +129,7 @@ export class Curves {
   }
 
   choose(name, wanted) {
-    this.names = this.names.filter((other) => other !== name).concat(wanted ? [name] : []);
+    this.chosen = this.chosen.filter((other) => other !== name).concat(wanted ? [name] : []);
     const box = this.boxes.get(name);
     if (box) box.checked = wanted;
     this.onchosen();
@@ -121,17 +140,32 @@ export class Curves {
     this.onchosen();
   }
 
+  // Curves of two answers; the motor's speed is grey until it belongs to them.
   show(shown, reference) {
+    this.answers = [shown, reference];
     for (const [name, figure] of this.figures) {
-      if (this.names.includes(name) && figure.plane === this.planes.has(name)) continue;
+      if (this.chosen.includes(name) && figure.plane === this.planes.has(name)) continue;
       figure.element.remove();
       this.figures.delete(name);
     }
-    for (const [place, name] of this.names.entries()) {
+    for (const [place, name] of this.chosen.entries()) {
       if (!this.figures.has(name)) this.add(name, place);
-      this.figures.get(name).show(shown, reference);
+      if (name !== RUNNING) this.figures.get(name).show(shown, reference);
+      else if (this.runs[0]) this.figures.get(name).stale();
+      else this.figures.get(name).element.hidden = true;
     }
     this.key(reference);
+  }
+
+  // Motor speeds of the machine that is shown and of the reference, or the reason why there is none.
+  run(shown, reference, problem) {
+    const figure = this.figures.get(RUNNING), [answer] = this.answers;
+    if (!figure || !answer) return;
+    this.runs = [shown, reference];
+    const label = this.answers[1]?.label;
+    if (shown) figure.show(shown, reference && label ? { ...reference, label } : null);
+    figure.element.hidden = false;
+    figure.say(problem);
   }
 
   add(name, place) {
@@ -160,5 +194,5 @@ export class Curves {
     if (figure && !figure.plane) figure.chart.band(area);
   }
 
-  follow(index, degrees) { this.figures.forEach((figure) => figure.follow(index, degrees)); }
+  follow(degrees) { this.figures.forEach((figure) => figure.follow(degrees)); }
 }

@@ -10,9 +10,12 @@
 //   change(state, still)  show another state; `still` while a hand moves something: one step of undo for all of it
 //   drag(fields, still)   the same by a request "drag", whose answer has the new state
 //   focus(path), band(name, area)  bring a parameter into view; a tolerance band in a chart, or null
-//   onknown(f), onchanged(f), onshown(f)  call f(answer or state): after each description, change, answer to a look
+//   onknown(f), onchanged(f), onshown(f), oncompared(f)  call f(answer or state): after each description, change, answer
+//             to a look, answer to a look of the reference
+import { Ask } from "./ask.js";
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
+import { Handles } from "./handles.js";
 import { Groups } from "./groups.js";
 import { History, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
@@ -21,6 +24,7 @@ import { Parameters } from "./parameters.js";
 
 const COUNT = 360; // crank angles of a period
 const FIRST_CURVES = 3;
+const REST = 150; // ms without a change, until the motor's speed is asked for
 const REMEMBER = 300; // ms between a change and its place in the address
 const LONG_NOTE = 90; // characters of a note that stands open
 
@@ -32,13 +36,14 @@ export class Explore {
   constructor(root, transport, address) {
     Object.assign(this, { root, address, known: null, shown: null, reference: null, frozen: null, answered: null });
     Object.assign(this, { moving: false, ready: false, described: null, kept: new Map(), timer: null });
-    this.listeners = { known: [], changed: [], shown: [] };
+    this.listeners = { known: [], changed: [], shown: [], compared: [] };
     this.requests = new Requests(transport);
-    this.requests.onlook = (answer) => this.receive(answer);
+    this.requests.onlook = (answer, asked) => this.receive(answer, asked);
     this.requests.onlost = (reason) => this.lost(reason);
     root.explore = this;
     this.build();
-    this.requests.ask("open", { token: address.read().token }, (answer) => this.open(answer));
+    const { token, state, show } = address.read();
+    this.requests.ask("open", { token, address: { state, show } }, (answer) => this.open(answer));
   }
 
   onknown(listener) { this.listeners.known.push(listener); }
@@ -46,6 +51,8 @@ export class Explore {
   onchanged(listener) { this.listeners.changed.push(listener); }
 
   onshown(listener) { this.listeners.shown.push(listener); }
+
+  oncompared(listener) { this.listeners.compared.push(listener); }
 
   tell(kind, item) { this.listeners[kind].forEach((listener) => listener(item)); }
 
@@ -74,19 +81,22 @@ export class Explore {
     this.sheet = made(this.root, "div", { class: "sheet" });
     const head = made(this.sheet, "header");
     this.title = made(head, "h1");
-    this.tabs = made(head, "div", { class: "tabs", role: "tablist", "aria-label": "variants" });
     const tools = made(head, "div", { class: "tools" });
     this.undo = button(tools, "↶ Undo", () => this.move(-1), { title: "Ctrl+Z" });
     this.redo = button(tools, "↷ Redo", () => this.move(1), { title: "Ctrl+Shift+Z" });
     this.freeze = button(tools, "Compare with now", () => this.compare(true));
     this.thaw = button(tools, "Compare with", () => this.compare(false));
     this.both = checkbox(tools, "reference in the drawing", false, () => this.redraw());
-    this.keeping = made(tools, "div", { class: "keep" });
+    this.tabs = made(head, "div", { class: "tabs", role: "tablist", "aria-label": "variants" });
+    this.keeping = made(head, "div", { class: "keep" });
     this.problem = made(this.sheet, "p", { class: "problem", role: "alert", hidden: "" });
     this.notes = made(this.sheet, "div", { class: "notes", role: "status" });
     const body = made(this.sheet, "div", { class: "body" });
     this.left = made(body, "section", { class: "machine", "aria-label": "mechanism" });
     this.mechanism = new Mechanism(this.left, (index) => this.follow(index));
+    this.handles = new Handles(this.drawing, {
+      ondrag: (wanted) => this.drag(wanted), ondrop: (wanted) => this.drag(wanted, false),
+    });
     this.asking = made(body, "section", { class: "ask", "aria-label": "questions" });
     const figures = made(body, "section", { class: "curves", "aria-label": "curves" });
     this.curves = new Curves(figures, {
@@ -96,6 +106,7 @@ export class Explore {
     const side = made(body, "section", { class: "numbers", "aria-label": "parameters" });
     this.grouping = made(side, "div", { class: "groups" });
     this.parameters = new Parameters(side, (path, value, still) => this.set(path, value, still));
+    this.questions = new Ask(this.asking, this);
     this.root.addEventListener("keydown", (event) => this.press(event));
   }
 
@@ -116,8 +127,8 @@ export class Explore {
     this.title.textContent = answer.title;
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
-    this.history = new History({ ...answer.start, ...parsed(kept.state, {}) });
-    this.curves.names = parsed(kept.show, []);
+    this.history = new History(answer.start);
+    this.curves.chosen = answer.show ?? [];
     this.curves.planes = new Set(parsed(kept.planes, []));
     this.at = Number(kept.angle) || 0;
     this.present();
@@ -155,8 +166,8 @@ export class Explore {
   }
 
   drag(fields, still = true) {
-    this.dragging = still;
-    this.requests.look("drag", { state: this.state, show: this.names, count: COUNT, ...fields });
+    this.clock.run(false);
+    this.requests.look("drag", { state: this.state, show: this.names, count: COUNT, ...fields, still });
   }
 
   move(steps) {
@@ -180,9 +191,10 @@ export class Explore {
       if (answer.problem) { this.refuse(answer); return; }
       this.described = structure;
       this.known = answer;
-      if (!this.names.length) this.curves.names = firstCurves(answer.quantities);
-      this.curves.offer(answer.quantities);
+      if (!this.curves.chosen.length) this.curves.chosen = firstCurves(answer.quantities);
+      this.curves.offer(answer.quantities, answer.drive);
       this.parameters.describe(answer.parameters);
+      this.handles.describe(answer.parameters);
       for (const tab of this.tabs.children) {
         const chosen = tab.textContent === this.state.variant;
         tab.setAttribute("aria-selected", chosen);
@@ -218,15 +230,31 @@ export class Explore {
     this.forgetReference = this.requests.ask("look", { state, show: this.names, count: COUNT }, (answer) => {
       this.reference = answer.problem ? null : { ...answer, label };
       this.redraw();
+      this.tell("compared", answer);
     });
+  }
+
+  // The motor's speed, once the hand rests.
+  askRunning() {
+    clearTimeout(this.rest);
+    this.forgetRunning?.();
+    if (!this.curves.running) return;
+    this.rest = setTimeout(() => {
+      const found = {}, { state, compared: reference } = this;
+      this.forgetRunning = this.requests.ask("running", { state, reference }, (answer) => {
+        if (answer.more) { found[answer.running] = answer; return; }
+        this.curves.run(found.state, found.reference, found.state ? "" : answer.problem);
+        this.follow(this.clock.index);
+      });
+    }, REST);
   }
 
   ownReference() { return this.variants.find(({ name }) => name === this.state.variant)?.reference ?? ""; }
 
-  receive(answer) {
+  receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
       this.history.keep(answer.state, this.moving);
-      this.moving = this.dragging;
+      this.moving = asked.still;
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);
@@ -234,9 +262,10 @@ export class Explore {
     this.answered = answer;
     if (answer.problem) { this.refuse(answer); return; }
     const first = !this.ready;
+    this.askRunning();
     Object.assign(this, { shown: answer, ready: true });
     this.say("");
-    this.note(answer.notes);
+    this.note([...this.opened.notes, ...answer.notes]);
     this.redraw();
     if (first) this.clock.choose(this.at / this.clock.step);
     this.root.dataset.shown = answer.id;
@@ -262,18 +291,18 @@ export class Explore {
 
   redraw() {
     const { shown, reference } = this;
-    this.undo.disabled = this.history.first;
-    this.redo.disabled = this.history.last;
     if (!shown) return;
     this.parameters.show(shown.values);
     this.mechanism.show(shown, this.both.checked ? reference : null, this.moving);
+    this.handles.update(shown.handles, shown.values, shown.snap);
     this.curves.show(shown, reference);
     this.follow(this.clock.index);
   }
 
   follow(index) {
+    this.handles?.show(index);
     if (!this.shown) return;
-    this.curves.follow(index, this.shown.angle[index % this.shown.angle.length]);
+    this.curves.follow(this.shown.angle[index % this.shown.angle.length]);
     if (!this.clock.running) this.remember();
   }
 
@@ -283,9 +312,11 @@ export class Explore {
 
   // The address reopens what is shown.
   remember() {
+    this.undo.disabled = this.history.first;
+    this.redo.disabled = this.history.last;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.address.write({
-      state: JSON.stringify(this.state), show: JSON.stringify(this.names), planes: JSON.stringify([...this.curves.planes]),
+      state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen), planes: JSON.stringify([...this.curves.planes]),
       angle: String(this.clock.degrees), compared: JSON.stringify(this.frozen),
     }), REMEMBER);
   }

@@ -17,24 +17,25 @@ const HINT = "Arrow keys move it by a step, with Shift by ten; Alt moves it with
 
 export class Handles {
   // `ondrag(wanted)` is called at most once a frame while a point moves, `ondrop(wanted)` at its end: {handle, x, y, index,
-  // snap}, the place in m at the crank angle of an index.
-  // `fields` are those of the parameters, by path: {label, unit, factor}.
-  constructor(drawing, fields = new Map()) {
-    Object.assign(this, { drawing, fields, items: [], grips: new Map(), values: {}, index: 0, held: null, asked: null });
-    Object.assign(this, { snap: 0, ondrag: () => {}, ondrop: () => {} });
+  // snap, step}, the place and the snapping step in m at the crank angle of an index.
+  constructor(drawing, { ondrag, ondrop }) {
+    Object.assign(this, { drawing, ondrag, ondrop, fields: new Map(), grips: new Map(), values: {}, index: 0, held: null });
+    drawing.onview = () => this.show(this.index);
     this.layer = element("g", drawing.svg, { class: "handles" });
     this.mark = element("path", this.layer, { class: "target", d: "M-9 0H9M0 -9V9", visibility: "hidden" });
     this.tip = element("text", drawing.svg, { class: "tip", visibility: "hidden" });
   }
 
+  // Names and units of the parameters, [{path, group, label, unit, factor}].
+  describe(fields) { this.fields = new Map(fields.map((field) => [field.path, field])); }
+
   // New points and values, with the step of lengths, m.
   update(items, values, snap) {
-    Object.assign(this, { items, values, snap });
+    Object.assign(this, { values, snap });
     const names = new Set(items.map(({ name }) => name));
     for (const [name, grip] of this.grips) {
       if (names.has(name)) continue;
       grip.group.remove();
-      if (this.held?.grip === grip) this.held = null;
       this.grips.delete(name);
     }
     for (const item of [...items].reverse()) { // the first lie on top
@@ -54,8 +55,6 @@ export class Handles {
     element("path", group, { class: "form", d: GRIPS[kind] });
     const on = (kinds, listener) => kinds.split(" ").forEach((word) => group.addEventListener(word, listener));
     on("pointerdown", (event) => this.grab(grip, event));
-    on("pointermove", (event) => this.pull(grip, event));
-    on("pointerup pointercancel", (event) => this.release(event));
     on("keydown", (event) => this.nudge(grip, event));
     on("keyup blur", () => this.held?.grip === grip && this.held.keys && this.drop());
     on("pointerenter focus", () => { if (!this.held) this.tell(grip); });
@@ -101,7 +100,7 @@ export class Handles {
     const field = this.fields.get(path), value = this.values[path];
     if (!field || value === undefined) return path;
     const number = Number((value * field.factor).toPrecision(6));
-    return `${field.label} = ${number} ${field.unit}`;
+    return `${field.group} ${field.label} = ${number} ${field.unit}`;
   }
 
   grab(grip, event) {
@@ -109,22 +108,18 @@ export class Handles {
     event.preventDefault(); // no text is selected
     grip.group.focus({ preventScroll: true });
     grip.group.setPointerCapture(event.pointerId);
-    const [x, y] = this.at(grip.item), [pointerX, pointerY] = this.under(event);
-    this.held = { grip, x, y, start: [x - pointerX, y - pointerY], index: this.index, pointer: event.pointerId };
-    this.layer.classList.add("held");
-    grip.group.classList.add("held");
-  }
-
-  // Place of a pointer in the drawing, m.
-  under({ clientX, clientY }) {
-    const box = this.drawing.svg.getBoundingClientRect(), scale = this.drawing.width / box.width;
-    return this.drawing.metres((clientX - box.left) * scale, (clientY - box.top) * scale);
-  }
-
-  pull(grip, event) {
-    if (this.held?.pointer !== event.pointerId) return;
-    const [x, y] = this.under(event), [aheadX, aheadY] = this.held.start;
-    this.move(x + aheadX, y + aheadY, !event.altKey);
+    const { drawing } = this, [x, y] = this.at(grip.item), listening = new AbortController();
+    const perPixel = drawing.width / drawing.svg.getBoundingClientRect().width / drawing.scale;
+    this.held = { grip, x, y, index: this.index, step: this.snap, listening };
+    for (const element of [this.layer, grip.group]) element.classList.add("held");
+    const on = (name, listener) => window.addEventListener(name, (next) => {
+      if (next.pointerId === event.pointerId) listener(next);
+    }, { signal: listening.signal });
+    on("pointermove", ({ clientX, clientY, altKey }) => {
+      this.move(x + perPixel * (clientX - event.clientX), y - perPixel * (clientY - event.clientY), !altKey);
+    });
+    on("pointerup", () => this.drop());
+    on("pointercancel", () => this.drop());
   }
 
   nudge(grip, event) {
@@ -133,7 +128,7 @@ export class Handles {
     event.preventDefault();
     event.stopPropagation(); // the crank stands
     const [x, y] = this.at(grip.item);
-    this.held ??= { grip, x, y, index: this.index, keys: true };
+    this.held ??= { grip, x, y, index: this.index, step: this.snap, keys: true };
     const times = (event.shiftKey ? 10 : 1) * (event.altKey ? 0.1 : 1) * this.snap;
     this.move(this.held.x + times * step[0], this.held.y + times * step[1], !event.altKey);
   }
@@ -151,8 +146,8 @@ export class Handles {
 
   // Request of the present place.
   get wanted() {
-    const { grip, x, y, index, snap } = this.held;
-    return { handle: grip.name, x, y, index, snap };
+    const { grip, x, y, index, snap, step } = this.held;
+    return { handle: grip.name, x, y, index, snap, step };
   }
 
   // A cross where the pointer wants the point.
@@ -161,14 +156,11 @@ export class Handles {
     put(this.mark, { visibility: "visible", transform: `translate(${short(x)} ${short(y)})` });
   }
 
-  release(event) {
-    if (this.held?.pointer === event.pointerId) this.drop();
-  }
-
   drop() {
     cancelAnimationFrame(this.asked);
     this.asked = null;
-    const { grip, snap } = this.held, { wanted } = this;
+    const { grip, snap, listening } = this.held, { wanted } = this;
+    listening?.abort();
     this.held = null;
     for (const group of [this.layer, grip.group]) group.classList.remove("held");
     this.mark.setAttribute("visibility", "hidden");

@@ -28,7 +28,7 @@ export class Mechanism {
   // `onturn(index)` is called when another crank angle is chosen.
   constructor(parent, onturn) {
     Object.assign(this, { parent, shown: null, reference: null, frame: null, hidden: new Set(), arrows: "" });
-    this.svg = element("svg", made(parent, "div", { class: "stage" }), { tabindex: 0, role: "img" });
+    this.svg = element("svg", made(parent, "div", { class: "stage" }), { tabindex: 0, role: "group", "aria-label": "drawing" });
     this.drawing = new Drawing(this.svg, { tallest: this.tallest() });
     this.controls();
     const options = made(parent, "div", { class: "options" });

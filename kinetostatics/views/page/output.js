@@ -7,11 +7,11 @@ const REDUCTIONS = {
 };
 
 export class OutputChoice {
-  constructor(parent, words, onchange) {
+  constructor(parent, onchange) {
     this.line = made(parent, "p", { class: "output" });
     this.reduction = made(this.line, "select", { "aria-label": "which number" });
     for (const [name, title] of Object.entries(REDUCTIONS)) made(this.reduction, "option", { value: name }, title);
-    this.line.append(` ${words} `);
+    this.line.append(" of ");
     this.quantity = made(this.line, "select", { "aria-label": "of which quantity" });
     for (const select of [this.reduction, this.quantity]) select.addEventListener("change", onchange);
   }

@@ -1,8 +1,7 @@
 // A slider and a number field with unit for each parameter, in groups; a box to search them.
 import { button, made } from "./html.js";
 
-const OPEN_ROWS = 40; // rows of the groups that stand open at first
-const DIGITS = 10; // of a number in a field
+const DIGITS = 7; // of a number in a field
 const WIDER = 1.5; // times a number beyond the ends of its slider is the new end
 
 // One parameter. Numbers are shown in its unit; `onchange(path, value, still)` gets them in SI, null for the first one.
@@ -22,7 +21,8 @@ class Row {
       this.back.setAttribute(key, text);
     }
     const set = (text, still) => {
-      if (text !== "" && Number.isFinite(Number(text))) onchange(path, Number(text) / factor, still);
+      if (text === this.text(field.value)) onchange(path, null, still);
+      else if (text !== "" && Number.isFinite(Number(text))) onchange(path, Number(text) / factor, still);
     };
     this.slider.addEventListener("input", () => { this.moving = true; set(this.slider.value, true); });
     this.slider.addEventListener("change", () => { this.moving = false; set(this.slider.value, false); });
@@ -32,6 +32,9 @@ class Row {
   }
 
   text(value) { return String(Number((value * this.field.factor).toPrecision(DIGITS))); }
+
+  // Ends of its slider, SI.
+  get ends() { return [this.slider.min, this.slider.max].map((end) => Number(end) / this.field.factor); }
 
   get changed() { return this.value !== this.field.value; }
 
@@ -60,14 +63,14 @@ export class Parameters {
     this.list = made(element, "div", { class: "list" });
   }
 
-  // Rows of another machine; groups stay folded as they are.
+  // Rows of another machine; groups stay folded as they are, at first those of zeros are.
   describe(fields) {
     this.rows.clear();
     this.groups.clear();
     this.list.replaceChildren();
-    const open = fields.length <= OPEN_ROWS;
     for (const field of fields) {
-      if (!this.groups.has(field.group)) this.group(field.group, this.folded.get(field.group) ?? open);
+      const zeros = fields.every(({ group, value }) => group !== field.group || value === 0);
+      if (!this.groups.has(field.group)) this.group(field.group, this.folded.get(field.group) ?? !zeros);
       const { body, rows } = this.groups.get(field.group), row = new Row(body, field, this.onchange);
       rows.push(row);
       this.rows.set(field.path, row);
@@ -104,6 +107,8 @@ export class Parameters {
       if (count.textContent !== text) count.textContent = text;
     }
   }
+
+  ends(path) { return this.rows.get(path).ends; }
 
   // Bring a parameter into view, with the focus on its slider.
   focus(path) {

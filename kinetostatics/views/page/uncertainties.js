@@ -1,14 +1,12 @@
 // Standard uncertainties of parameters, for tolerance bands around the curves.
-import { made } from "./html.js";
+import { checkbox, made } from "./html.js";
 
 export class Uncertainties {
   constructor(parent, onchange) {
     Object.assign(this, { onchange, spreads: null, fields: new Map() });
     this.root = made(parent, "div", { class: "uncertainties" });
-    const label = made(this.root, "label");
-    this.box = made(label, "input", { type: "checkbox" });
-    label.append(" Show bands: two standard uncertainties on both sides, of first order");
-    this.box.addEventListener("change", onchange);
+    const words = "Show bands: two standard uncertainties on both sides, of first order";
+    this.box = checkbox(this.root, words, false, onchange);
     this.list = made(this.root, "div", { class: "inputs" });
     this.adding = made(this.root, "select", { "aria-label": "add an uncertain parameter" });
     this.adding.addEventListener("change", () => this.add(this.adding.value));

@@ -19,7 +19,7 @@ STILL = ks.Scene(ks.crank_slider(0.05, 0.2), 100.0)
 @pytest.mark.parametrize("name", ["balancing_torque", "O", "slider_velocity"])
 def test_extremes_are_those_of_the_library(name):
     solution, reference = RUBBED.solve(360), HEAVIER.solve(90)
-    (row,) = answers.quantity_rows(solution, [name], reference)
+    (row,) = answers.quantity_rows(solution, [name], answers.Reference(reference))
     low, low_at, high, high_at = row.extremes.ends
     found, other = ks.extremes(solution, name), ks.extremes(reference, name)
     assert (low, high) == pytest.approx(found.range, rel=1e-12)
@@ -33,7 +33,7 @@ def test_extremes_are_those_of_the_library(name):
 
 def test_figures_are_those_of_compare_and_means():
     solution, reference = RUBBED.solve(360), HEAVIER.solve(360)
-    rows = {row.label: row for row in answers.figure_rows(solution, reference)}
+    rows = {row.label: row for row in answers.figure_rows(solution, answers.Reference(reference))}
     table = ks.compare(reference, solution).frame()
     shared = [label for label in rows if label in table.index]
     assert {"mean |balancing torque|", "mean drive power", "torque extremum 1"} <= set(shared)
@@ -50,7 +50,7 @@ def test_without_a_reference_there_are_no_ratios():
 
 
 def test_a_reference_may_lack_a_quantity():
-    (row,) = answers.quantity_rows(SAW.solve(360), ["cam_force"], RUBBED.solve(360))
+    (row,) = answers.quantity_rows(SAW.solve(360), ["cam_force"], answers.Reference(RUBBED.solve(360)))
     assert np.isnan(row.ratio)
 
 
