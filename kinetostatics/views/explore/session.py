@@ -176,6 +176,7 @@ def open_page(session, request):
     references = session.case.reference_of if session.case else lambda name: name
     variants = [{"name": name, "reference": references(name)} for name in session.bases]
     found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
+    found["file"] = keeping.first_name(session)
     chain = {} if session.chain is None else {"chain": session.chain}
     found["start"] = {"variant": session.first, "values": {}, **chain}
     address = request.get("address")
@@ -246,7 +247,7 @@ def look(session, request):
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
-        **handle_data(solution),
+        **handle_data(solution, scene.places),
     }
 
 
@@ -280,13 +281,14 @@ def curve(solution, known):
     values = np.stack([np.broadcast_to(part, shape) for part in (parts if known.vector else (parts,))])
     values = zeroed(values, rounding)
     size = np.hypot(*values) if known.vector else values
-    factor, unit = display_unit(known.unit, [size])
-    limit = drawn_limit([np.abs(size)])
+    most = ordinary_size([size])
+    factor, unit = display_unit(known.unit, [most])
+    limit = drawn_limit([size], most)
     return {
         "label": known.label,
         "unit": pretty_unit(unit),
         "factor": factor,
-        "decimals": decimals(factor * ordinary_size([size])),
+        "decimals": decimals(factor * most),
         "vector": known.vector,
         "sight": factor * limit if np.isfinite(limit) else None,
         "values": values,

@@ -38,7 +38,7 @@ const significant = (value) => (Number.isFinite(value) ? String(Number(value.toP
 export class Chart {
   constructor(parent, { label = "", unit = "", plane = false, period = 360, height = 220 } = {}) {
     Object.assign(this, { parent, label, unit, plane, period, height, sight: Infinity, curves: [], area: null });
-    Object.assign(this, { range: null, zoom: null, angle: null, tips: null, drag: null, onchoose: null });
+    Object.assign(this, { range: null, zoom: null, angle: null, tips: null, drag: null, onchoose: null, drawn: [] });
     this.svg = element("svg", parent, { class: `chart ${plane ? "plane" : "turn"}`, role: "img", tabindex: 0 });
     this.build();
     this.listen();
@@ -205,8 +205,11 @@ export class Chart {
       element("path", lines);
       element("circle", dots, { r: 3.5 });
     }
+    const place = [this.scaleX, this.scaleY, this.across[0], this.up[1], this.sight, this.period].join();
     [...lines.children].forEach((path, number) => {
-      const curve = curves[number];
+      const curve = curves[number], before = this.drawn[number];
+      if (before && before.curve === curve && before.place === place) return; // the reference, mostly
+      this.drawn[number] = { curve, place };
       put(path, { d: curve ? this.trace(curve) : "" });
       if (!curve) return;
       const { thin, colour, dash } = curve;
