@@ -107,7 +107,8 @@ def test_two_pages_do_not_disturb_each_other(explored):
 
 
 def test_a_case_saved_by_the_page_has_the_numbers_that_it_shows(explored, tmp_path):
-    page = explored("sawframe_2r63", "--variant", "cam-circle", "--folder", tmp_path)
+    shown = "&show=" + quote('["balancing_torque"]')
+    page = explored("sawframe_2r63", "--variant", "cam-circle", "--folder", tmp_path, fields=shown)
     page.slide("slider.mass", 620)
 
     def press(text):
