@@ -15,6 +15,7 @@ import warnings
 import webbrowser
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from ...casefile.case import Case, load_case
 from ...errors import MissingLibraryError, ParameterError
@@ -191,7 +192,9 @@ def _socket_handler(site):
 
         def end(self):
             """Close at once, what is not sent is lost."""
-            self.ws_connection.stream.close()
+            connection: Any = self.ws_connection  # None once it was told to close
+            if connection is not None:
+                connection.stream.close()
 
     return Socket
 
