@@ -15,7 +15,10 @@ from kinetostatics import errors, version
 
 pytestmark = pytest.mark.slow
 
-HEAVY = ("matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "scipy.stats", "sympy")
+HEAVY = (
+    *("anywidget", "matplotlib", "numba", "pandas", "pint", "pydantic", "scipy.optimize", "scipy.stats", "sympy"),
+    "tornado",
+)
 FEW = 3
 """Modules that importing the package may load, the standard library's aside."""
 

@@ -1,7 +1,7 @@
 """Drawings of machines as data for a page: strokes that move as rigid bodies, joints, mass centres, arrows.
 
-Arrays are of single precision, poses one after another. A stroke has points (K, 2); if it moves, also x, y and angle in
-each pose (N, 3); if it changes shape, as springs do, all its points (N, K, 2).
+Arrays are of single precision. A stroke has `points` (K, 2). One that moves has `poses` (N, 3) as well, x, y and angle
+of its axes. One that changes shape, as a spring, has `shapes` (N, K, 2), its points in each pose.
 """
 
 from typing import Any
@@ -36,9 +36,9 @@ def drawing_of(solution):
 def movements(machines):
     """Drawings of machines by name; machines of like size have one frame and force scale.
 
-    A drawing has `strokes`; `joints`, `masses` (N, 2), `forces` (N, 2) of reactions and `torque` (N,); `arrows`, the
-    joint of each reaction; and its frame: `box` (left, low, right, high), `scale` of arrows, m per N, `longest` arrow,
-    `largest_torque`, and `force_unit` with its factor.
+    A drawing has `strokes`, places of `joints` and `masses` (N, 2), `forces` of reactions (N, 2) and `torque` (N,).
+    `arrows` names the joint of each reaction. The frame has the `box` (left, low, right, high), m, the `scale` of
+    arrows, m/N, the length of the `longest`, the `largest_torque`, and the `force_unit` with its factor.
     """
     shapes = {name: Shape(machine.solution) for name, machine in machines.items()}
     by_size = sorted(shapes, key=lambda name: -shapes[name].size)

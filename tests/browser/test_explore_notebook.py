@@ -50,13 +50,16 @@ class Notebook:
         self.wait = WebDriverWait(driver, PATIENCE, poll_frequency=0.1, ignored_exceptions=unready)
 
     def cell(self, name):
+        """A cell."""
         return self.driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook .jp-CodeCell")[list(CELLS).index(name)]
 
     def run(self, name):
+        """Run a cell, as a person does."""
         self.wait.until(lambda _: self.choose(self.cell(name)))
         ActionChains(self.driver).key_down(Keys.SHIFT).send_keys(Keys.ENTER).key_up(Keys.SHIFT).perform()
 
     def choose(self, cell):
+        """Put the caret into a cell."""
         self.driver.execute_script("arguments[0].scrollIntoView({block: 'start'})", cell)
         cell.find_element(By.CSS_SELECTOR, ".cm-content").click()
         return True
@@ -67,18 +70,28 @@ class Notebook:
         return self.cell(name).find_element(By.CSS_SELECTOR, ".explore")
 
     def curves(self, page):
+        """Outlines of all curves."""
         return self.driver.execute_script(CURVES, page)
 
     def row(self, page, path):
+        """The row of a parameter."""
         return page.find_element(By.CSS_SELECTOR, f'.row[title="{path}"]')
 
     def number(self, page, path):
+        """The number in the field of a parameter, in its shown unit."""
         return float(self.row(page, path).find_element(By.CSS_SELECTOR, "[type=number]").get_property("value"))
+
+    def rests(self, element):
+        """Scroll to an element; whether it stays in its place, as when all numbers of its page are shown."""
+        script = "arguments[0].scrollIntoView({block: 'center'}); return arguments[0].getBoundingClientRect().top"
+        before = self.driver.execute_script(script, element)
+        time.sleep(0.5)
+        return self.driver.execute_script(script, element) == before
 
     def drag(self, page, path, pixels):
         """Drag a slider; the curves, when they have followed."""
         slider, before = self.row(page, path).find_element(By.CSS_SELECTOR, "[type=range]"), self.curves(page)
-        self.driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", slider)
+        self.wait.until(lambda _: self.rests(slider))
         ActionChains(self.driver).click_and_hold(slider).move_by_offset(pixels, 0).release().perform()
         self.wait.until(lambda _: self.curves(page) != before)
         return self.curves(page)

@@ -6,6 +6,7 @@ import sys
 from contextlib import contextmanager
 
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
 READY = 20.0
@@ -44,9 +45,11 @@ class ExplorePage:
         return self.driver.execute_script(before + text, *values)
 
     def find(self, selector):
+        """First element of a selector of CSS."""
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
     def all(self, selector):
+        """All elements of a selector of CSS."""
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     @property
@@ -74,6 +77,21 @@ class ExplorePage:
         script = "arguments[0].value = arguments[1]; "
         script += "arguments[2].forEach((kind) => arguments[0].dispatchEvent(new Event(kind, {bubbles: true})))"
         self.driver.execute_script(script, slider, value, kinds)
+        if end:
+            self.settled()
+
+    def write(self, path, text):
+        """Type a number into the field of a parameter."""
+        self.row(path)[1].send_keys(Keys.CONTROL, "a", Keys.NULL, text, Keys.ENTER)
+        self.settled()
+
+    def button(self, text):
+        """Button whose text ends so."""
+        return next(found for found in self.all(".tools button") if found.text.endswith(text))
+
+    def tab(self, name):
+        """Choose a variant."""
+        next(found for found in self.all("[role=tab]") if found.text == name).click()
         self.settled()
 
     def severe(self):

@@ -3,7 +3,7 @@
 The table comes row by row, so that a server can answer a drag between two rows.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -34,7 +34,7 @@ SHARE_DIGITS = 3
 INFINITY = "∞"
 COVERAGE = 2.0
 """Half width of a tolerance band in standard uncertainties: about 95 % of machines, each value normal."""
-MEANS = {
+MEANS: dict[str, tuple[str, Callable]] = {
     "mean |balancing torque|": ("N m", mean_absolute_torque),
     "mean balancing torque": ("N m", attrgetter("mean_torque")),
     "mean drive power": ("W", attrgetter("mean_power")),
@@ -258,8 +258,9 @@ def ask(session, request):
     names = [name for name in request.get("show", ()) if name in of_scene(solution)]
     for row in quantity_rows(solution, names, reference):
         yield {"extremes": _quantity_texts(row)}
+    largest = max(map(abs, extrema(solution, "balancing_torque").range))
     for figure in figure_rows(solution, reference):
-        yield {"figure": _figure_texts(figure)}
+        yield {"figure": _figure_texts(figure, largest)}
 
 
 def _quantity_texts(row):
@@ -275,8 +276,9 @@ def _quantity_texts(row):
     return {"name": row.name, "label": label, "unit": pretty_unit(unit), "notes": row.notes} | texts
 
 
-def _figure_texts(row):
-    scale, unit = display_unit(row.unit, [[row.value, row.reference]])
+def _figure_texts(row, torque):
+    """Texts of a figure; all torques have the unit for the largest `torque`."""
+    scale, unit = display_unit(row.unit, [[torque] if row.unit == "N m" else [row.value, row.reference]])
     value, reference = (number(scale * item, infinity=INFINITY) for item in (row.value, row.reference))
     texts = {"value": value, "reference": reference, "ratio": _ratio_text(row.ratio)}
     return {"label": row.label, "unit": pretty_unit(unit), "problem": row.problem} | texts

@@ -1,7 +1,7 @@
 """Fields of a form for a table of a case file, from its schema, and their texts as values of the table.
 
 A field is a dict: `key`, with a point into inner tables ("coupler.mass"), `text`, its meaning, `unit` in SI, `form`,
-`required`, `default` and `choices` as texts. Lists are texts with commas; points of a list are separated by semicolons.
+`required`, `default` and `choices` as texts. Lists are texts with commas; semicolons separate points and segments.
 """
 
 import copy
@@ -20,6 +20,15 @@ from ...numbers.units import to_si
 
 FILE_KEYS = ("file", "table")
 """Keys of tables that name a file."""
+SEGMENT_KEYS = {"dwell": ("position", "angle"), "harmonic": ("start", "end", "angle")}
+"""Keys of the segments of a law in the order of their texts; of all curves those of "harmonic"."""
+SEGMENTS = [
+    {"kind": "cycloidal", "start": "50 mm", "end": "70 mm", "angle": "120 deg"},
+    {"kind": "dwell", "position": "70 mm", "angle": "60 deg"},
+    {"kind": "cycloidal", "start": "70 mm", "end": "50 mm", "angle": "120 deg"},
+    {"kind": "dwell", "position": "50 mm", "angle": "60 deg"},
+]
+"""Segments of a law that rises, dwells and returns."""
 BY_RULE: dict[type, str] = {
     checks.Name: "text",
     checks.Pair: "list",
@@ -37,34 +46,36 @@ def fields(model, raw, prefix="", needed=True):
     found = []
     for name, field in model.model_fields.items():
         inner = [table for table in tables_in(field.annotation) if table is not ValuesTable]
-        if name in FILE_KEYS or (inner and typing.get_origin(field.annotation) in (tuple, dict)):
-            continue
-        required, key = needed and field.is_required(), f"{prefix}{name}"
-        text = plain(meaning(model, name)).replace("; or a file of values", "")
-        if not inner:
-            if name != "kind":
-                found.append({"key": key, "text": text, "required": required} | _entry(model, name, field))
-            continue
-        own = raw.get(name) if isinstance(raw.get(name), dict) else {}
-        chosen = inner[0]
-        if len(inner) > 1:
-            by_kind = {typing.get_args(table.model_fields["kind"].annotation)[0]: table for table in inner}
-            chosen = by_kind.get(own.get("kind"), chosen)
-            offered = [word for word, table in by_kind.items() if table is chosen or _is_plain(table)]
-            kind = {"unit": "", "form": "choice", "default": "", "choices": offered}
-            found.append({"key": f"{key}.kind", "text": text, "required": required} | kind)
-        found += fields(chosen, own, f"{key}.", needed=required or bool(own))
+        required, text = (
+            needed and field.is_required(),
+            plain(meaning(model, name)).replace("; or a file of values", ""),
+        )
+        entry = {"key": f"{prefix}{name}", "text": text, "required": required}
+        if name == "segments":
+            example = {"text": f"{text} For example {text_of(SEGMENTS)}."}
+            found.append(entry | example | {"unit": "", "form": "segments", "default": "", "choices": []})
+        elif not inner and name not in ("kind", *FILE_KEYS):
+            found.append(entry | _entry(model, name, field))
+        elif inner and typing.get_origin(field.annotation) not in (tuple, dict):
+            found += _inner_fields(inner, raw.get(name), entry)
     return sorted(found, key=lambda field: not field["required"])
+
+
+def _inner_fields(inner, raw, entry):
+    """Fields of an inner table; one of several kinds has its kind first."""
+    own, chosen, found = raw if isinstance(raw, dict) else {}, inner[0], []
+    if len(inner) > 1:
+        by_kind = {typing.get_args(table.model_fields["kind"].annotation)[0]: table for table in inner}
+        chosen = by_kind.get(own.get("kind"), chosen)
+        offered = [word for word, table in by_kind.items() if not any(name in FILE_KEYS for name in table.model_fields)]
+        kind = {"key": f"{entry['key']}.kind", "unit": "", "form": "choice", "default": "", "choices": offered}
+        found.append(entry | kind)
+    return found + fields(chosen, own, f"{entry['key']}.", needed=entry["required"] or bool(own))
 
 
 def plain(text):
     """A text of the reference without its marks."""
     return text.replace("`", '"')
-
-
-def _is_plain(table):
-    """Whether a table needs neither a file nor a list of tables."""
-    return not any(name in FILE_KEYS or tables_in(field.annotation) for name, field in table.model_fields.items())
 
 
 def _entry(model, name, field):
@@ -121,8 +132,10 @@ def _default_text(value, unit):
 
 def text_of(value):
     """Text in a field of a value of a table; empty for an absent one."""
+    if isinstance(value, dict):  # a segment of a law
+        return ", ".join(map(text_of, value.values()))
     if isinstance(value, list):
-        return ("; " if any(isinstance(part, list) for part in value) else ", ").join(map(text_of, value))
+        return ("; " if any(isinstance(part, list | dict) for part in value) else ", ").join(map(text_of, value))
     if isinstance(value, bool):
         return str(value).lower()
     return "" if value is None else str(value)
@@ -131,6 +144,8 @@ def text_of(value):
 def value_of(text, form):
     """Value of a table from the text in a field; the schema finds its faults."""
     text = text.strip()
+    if form == "segments":
+        return [_segment(part) for part in text.strip("; ").split(";")]
     if form == "places":
         return [value_of(part, "place") for part in text.split(";")]
     if form == "list" or (form == "place" and "," in text):
@@ -144,6 +159,14 @@ def value_of(text, form):
             return text
         return text if not math.isfinite(number) else int(number) if form == "choice" else number
     return text
+
+
+def _segment(text):
+    """Segment of a law from its kind and the values of its keys, in the order of the schema."""
+    kind, *values = (part.strip() for part in text.split(","))
+    names = SEGMENT_KEYS.get(kind, SEGMENT_KEYS["harmonic"])
+    names = (*names, *(f"value {number}" for number in range(len(names) + 1, len(values) + 1)))
+    return {"kind": kind, **dict(zip(names, values, strict=False))}
 
 
 def with_texts(model, raw, texts):

@@ -24,6 +24,7 @@ from ...casefile.schema.tables import GravityTable, key_path, validate_by_keys
 from ...casefile.schema.variants import ChainVariant, FrictionTable
 from ...casefile.starters import STARTERS, starter
 from ...errors import KinetostaticsError, ParameterError
+from ...machine.group import FRAME
 from ...numbers import checks
 from ...solution.scene import Scene
 from . import proposals
@@ -184,7 +185,7 @@ def edited(raw, action):
     part = owner[key]
     kind = texts.get("cam.kind")
     if kind in proposals.CAMS and kind != part["cam"]["kind"]:
-        part["cam"] = {"kind": kind, **proposals.CAMS[kind]}
+        part["cam"] = proposals.cam_of_kind(kind, getattr(MADE_OF[model], "LAW", ("", "m"))[1])
         texts = {key: text for key, text in texts.items() if not key.startswith("cam.")}
     owner[key] = with_texts(model, part, texts)
     found = owner[key] if not at else found
@@ -371,7 +372,10 @@ def parts_of(state):
         entries = fields(model, owner[key])
         if at[:1] == ["friction"]:
             entries = [item for item in entries if item["key"] in proposals.friction_keys(at[1], mechanism)]
-        entries = [item | {"value": text_of(_value(owner[key], item["key"]))} for item in entries]
+        entries = [
+            item | {"value": text_of(_value(owner[key], item["key"]))} | _names(item, model, mechanism)
+            for item in entries
+        ]
         found.append(
             {"at": at, "title": _title(table, at), "about": plain(about(model)) if at else "", "fields": entries}
         )
@@ -430,6 +434,16 @@ def _title(table, at):
         case ["friction", joint]:
             return f"friction at {joint}"
     return at[0]
+
+
+def _names(field, model, mechanism):
+    """Joints or links to choose from for a key that names one."""
+    if field["form"] != "text" or field["key"] not in ("on", "against", "along"):
+        return {}
+    if field["default"] == "slider":
+        return {"choices": list(mechanism.guides)}
+    on_joint = field["key"] == "on" and word_of(model) in GROUPS and word_of(model) != "pin"
+    return {"choices": list(mechanism.joints) if on_joint else [*mechanism.links, FRAME]}
 
 
 def _value(raw, key):

@@ -19,6 +19,12 @@ NAME = re.compile(r"\w[\w -]{0,79}")
 """Name of a file without its ending: no separators of folders, and no dots."""
 
 
+def first_name(session):
+    """Name of files that the page offers first."""
+    name = f"{session.case.path.stem}_changed" if session.case else session.title
+    return re.sub(r"^[_ -]+|[^\w -]", "", normalise(name))[:80].strip() or "machine"
+
+
 def path_of(session, request, ending):
     """Path of a file of this name in the session's folder; `ParameterError` if it must not be written."""
     if session.folder is None:
@@ -38,12 +44,11 @@ def path_of(session, request, ending):
 
 def scenes_of(session, state):
     """Scene of the reference of a state by the name of its variant, and last the scene of the state."""
-    base, scene = session.base(state), session.scene(state)
-    name = state.get("variant", session.first)
+    name, scene = state.get("variant", session.first), session.scene(state)
     reference = session.case.reference_of(name) if session.case else name
-    if scene is base or reference != name:
-        return {reference: session.bases[reference], name: scene}
-    return {name: base, f"{name}-changed": scene}
+    if "chain" in state or (reference == name and not state.get("values")):
+        return {name: scene}
+    return {reference: session.bases[reference], name if reference != name else f"{name}-changed": scene}
 
 
 def save(session, request):
@@ -81,8 +86,6 @@ def python(session, request):
 
 def report(session, request):
     """Write a report of a state and its reference in a process of its own; None until it is written."""
-    from ...sweeps.workers import Workers
-
     path = path_of(session, request, ".html")
     if path.exists() and request.get("overwrite") is not True:
         yield {"exists": path.name}
@@ -91,6 +94,8 @@ def report(session, request):
     if request.get("reference") is not None:
         name, scene = list(scenes.items())[-1]
         scenes = {"before": session.scene(request["reference"]), name: scene}
+    from ...sweeps.workers import Workers
+
     with Workers(count=1) as workers:
         future = workers.submit(_write_report, scenes, path, session.title, shown_units().chosen)
         while not future.done():

@@ -35,7 +35,7 @@ def _refuse_constant(name):
 
 
 def packed(answer):
-    """An answer as (header, buffers): an array becomes {"array": its number, "kind": "f4" or "f8"}, NaN becomes None."""
+    """An answer as header and buffers: an array becomes {"array": number, "kind": "f4" or "f8"}, NaN becomes None."""
     buffers: list[bytes] = []
 
     def plain(item):

@@ -1,5 +1,6 @@
 """First keys of an added group, load or friction pair, from the motion of the machine, so that it can be assembled."""
 
+import json
 import string
 from dataclasses import MISSING, fields
 from itertools import combinations
@@ -9,6 +10,7 @@ import numpy as np
 
 from ...machine.friction import friction_kind
 from ...machine.group import FRAME
+from .forms import SEGMENTS
 
 ANGLES = 72
 """Crank angles at which the way of a joint is computed."""
@@ -26,6 +28,7 @@ CAMS: dict[str, dict[str, Any]] = {
     "cosine-law": {"amplitude": "100 mm", "mean": "500 mm"},
     "harmonic": {"cosine": ["200 mm", "0 mm", "5 mm"]},
     "cosine": {"amplitude": "10 mm", "mean": "60 mm"},
+    "joined": {"segments": SEGMENTS},
 }
 """Required keys by the kind of a cam or law."""
 FRICTION = {"mu": 0.1, "radius": "20 mm", "pin_radius": "15 mm", "roller_radius": "40 mm"}
@@ -129,6 +132,12 @@ def proposed_friction(joint, mechanism):
 def friction_keys(joint, mechanism):
     """Names of the keys of friction at a joint."""
     return [item.name for item in fields(friction_kind(mechanism.pairs[joint]))]
+
+
+def cam_of_kind(kind, unit):
+    """Cam or law of a kind; `unit` is that of the positions of a law, "rad" of a swinging follower."""
+    text = json.dumps({"kind": kind, **CAMS[kind]})
+    return json.loads(text.replace(" mm", " deg") if unit == "rad" else text)
 
 
 class Way:

@@ -140,12 +140,15 @@ def application(gate, session_of_page, hosts):
                 return
             if self.conversation is None:
                 if request["kind"] != "open" or not gate.admits(request.get("token")):
-                    self.close(REFUSED, "This address is of an earlier start.")
+                    self.close(
+                        REFUSED, "This address is of an earlier start; open the one printed last."
+                    )
                     return
                 self.conversation = Conversation(session_of_page(), self.send)
             self.conversation.take(request)
             if self.sent is not None:
-                await asyncio.wait([self.sent])
+                with contextlib.suppress(asyncio.CancelledError):  # the server ends
+                    await asyncio.wait([self.sent])
 
         def send(self, header, buffers):
             if header["kind"] == "open":

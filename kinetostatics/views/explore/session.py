@@ -176,6 +176,7 @@ def open_page(session, request):
     references = session.case.reference_of if session.case else lambda name: name
     variants = [{"name": name, "reference": references(name)} for name in session.bases]
     found = {"title": session.title, "source": session.source, "variants": variants, "show": None}
+    found["file"] = keeping.first_name(session)
     chain = {} if session.chain is None else {"chain": session.chain}
     found["start"] = {"variant": session.first, "values": {}, **chain}
     address = request.get("address")

@@ -72,10 +72,10 @@ def widget_class():
         address = traitlets.Dict(help="Further fields of the page, such as its curves.").tag(sync=True)
 
         def __init__(self, what, variant, folder, units):
+            self._conversations: dict[str, Conversation] = {}  # first: `close` ends them
             self._session = Session(what, variant, folder)
             self._new_session = lambda: Session(self._session.case or what, variant, folder)
             self._units = units
-            self._conversations: dict[str, Conversation] = {}
             super().__init__(state={"variant": self._session.first, "values": {}})
             self.on_msg(self._receive)
 

@@ -36,7 +36,7 @@ class Numbers {
 export class Ask {
   // `explore`: the page, as explore.js describes it.
   constructor(parent, explore) {
-    Object.assign(this, { root: parent, explore, timer: null, stops: [] });
+    Object.assign(this, { root: parent, explore, timer: null, stops: [], banded: new Set() });
     const numbers = this.section("Numbers", true);
     this.extremes = new Numbers(numbers, "Extremes, and largest size in the reference", EXTREMES);
     this.figures = new Numbers(numbers, "Means and torque extrema", FIGURES);
@@ -71,8 +71,13 @@ export class Ask {
   changed() {
     this.drop();
     for (const answer of [this.extremes.table, this.figures.table, this.bars.root]) answer.classList.add("stale");
-    for (const name of this.explore.names) this.explore.band(name, null);
+    this.clearBands();
     this.timer = setTimeout(() => this.follow(), DELAY);
+  }
+
+  clearBands() {
+    for (const name of this.banded) this.explore.band(name, null);
+    this.banded.clear();
   }
 
   // Await no answers any more.
@@ -122,7 +127,7 @@ export class Ask {
 
   askBands(state, show) {
     const { spreads, wanted } = this.uncertainties, { shown } = this.explore;
-    if (!wanted) for (const name of show) this.explore.band(name, null);
+    if (!wanted) this.clearBands();
     if (!wanted && spreads) return;
     this.collect("tolerances", { state, spreads, show: wanted ? show : [] }, ([first, ...parts], problem) => {
       this.uncertainties.say(problem, parts.map(({ band }) => band.note));
@@ -131,6 +136,7 @@ export class Ask {
       for (const { band } of parts) {
         const { factor } = shown.quantities[band.name], scaled = (side) => side.map((value) => factor * value);
         this.explore.band(band.name, { x: shown.angle, low: scaled(band.low), high: scaled(band.high) });
+        this.banded.add(band.name);
       }
     });
   }

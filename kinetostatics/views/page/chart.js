@@ -126,7 +126,7 @@ export class Chart {
   }
 
   draw() {
-    const { svg, width, height } = this;
+    const { width, height } = this;
     this.settle();
     let [across, up] = this.zoom || this.range || [this.plane ? [-1, 1] : [0, this.period], [-1, 1]];
     const [wide, tall] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
@@ -136,9 +136,9 @@ export class Chart {
       [across, up] = [about(across, wide), about(up, tall)];
     }
     Object.assign(this, { across, up, wide, tall, scaleX: wide / spanOf(across), scaleY: tall / spanOf(up) });
-    put(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.title });
-    put(this.inner, { width: wide, height: tall });
-    this.axes();
+    const seen = [...across, ...up, width, this.label, this.unit, this.period].join("\n");
+    if (seen !== this.seen) this.axes();
+    this.seen = seen; // what the axes show
     this.strokes();
     this.point();
   }
@@ -159,6 +159,8 @@ export class Chart {
 
   axes() {
     const { across, up, wide, tall, plane } = this, [stepX, stepY] = this.steps(), corner = `translate(${LEFT} ${TOP})`;
+    put(this.svg, { viewBox: `0 0 ${this.width} ${this.height}`, "aria-label": this.title });
+    put(this.inner, { width: wide, height: tall });
     const columns = multiples(stepX, across), rows = multiples(stepY, up);
     const column = (value) => `M${short(this.x(value))} 0v${tall}`;
     const row = (value) => `M0 ${short(this.y(value))}h${wide}`;

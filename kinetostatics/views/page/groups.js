@@ -140,6 +140,7 @@ class Part {
   choice(label, { choices, value, required, default: usual }) {
     const select = made(label, "select");
     if (!required) made(select, "option", { value: "" }, usual ? `${usual} (default)` : "");
+    if (value && !choices.includes(value)) made(select, "option", { value }, value);
     for (const text of choices) made(select, "option", { value: text }, text);
     select.value = value;
     return select;
@@ -168,7 +169,7 @@ class Part {
   tell(faults) {
     const left = [];
     for (const { key, text } of faults ?? []) {
-      const place = this.inputs.get(key);
+      const place = this.inputs.get(key) ?? this.inputs.get(key.slice(0, key.lastIndexOf(".")));
       if (!place) { left.push(text); continue; }
       place.fault.textContent = text;
       place.input.setAttribute("aria-invalid", "true");

@@ -1,82 +1,64 @@
 // Keep what is shown: a case file, Python text, a report; of the state at the press of the button.
+import { button, made } from "./html.js";
+
 export class Keep {
-  // `requests` asks the library, `shown()` gives {state, reference}; `name` is the first name of files.
-  constructor(element, requests, shown, name) {
-    Object.assign(this, { element, requests, shown });
-    element.classList.add("keep");
-    const label = this.add(element, "label", "Name of files ");
-    this.name = this.add(label, "input");
-    Object.assign(this.name, { type: "text", maxLength: 80, value: name });
+  // `name` is the first name of files.
+  constructor(element, explore, name) {
+    Object.assign(this, { explore, requests: explore.requests });
+    const label = made(element, "label", {}, "Name of the file ");
+    this.name = made(label, "input", { type: "text", maxlength: 80, spellcheck: "false" });
+    this.name.value = name;
     this.name.addEventListener("input", () => this.ask(null));
-    this.button("Save case", () => this.write("save"));
-    this.button("Copy Python", () => this.copy());
-    this.button("Report", () => this.write("report"));
-    this.overwrite = this.button("Replace it", () => this.confirmed());
-    this.told = this.add(element, "p");
-    this.told.setAttribute("role", "status");
-    this.text = this.add(element, "textarea");
-    Object.assign(this.text, { readOnly: true, rows: 8, spellcheck: false });
-    this.text.setAttribute("aria-label", "Python text");
-    this.text.hidden = true;
+    button(element, "Save case", () => this.write("save"), { title: "a case file for kinetostatics run" });
+    button(element, "Copy Python", () => this.copy(), { title: "Python text that builds this machine" });
+    button(element, "Report", () => this.write("report"), { title: "one page with figures and tables" });
+    this.overwrite = button(element, "Replace it", () => this.confirmed());
+    this.told = made(element, "span", { class: "told", role: "status" });
+    this.text = made(element, "textarea", { readonly: "", rows: 8, spellcheck: "false", "aria-label": "Python text", hidden: "" });
+    this.text.addEventListener("keydown", ({ key }) => { if (key === "Escape") this.tell(); });
     this.ask(null);
   }
 
-  add(parent, name, text = "") {
-    const element = document.createElement(name);
-    element.textContent = text;
-    parent.append(element);
-    return element;
-  }
-
-  button(text, onclick) {
-    const button = this.add(this.element, "button", text);
-    button.type = "button";
-    button.addEventListener("click", onclick);
-    return button;
-  }
-
-  // Ask whether an existing file is to be replaced: `confirmed` does so; null asks nothing.
+  // Offer to replace an existing file: `confirmed` does so; null offers nothing.
   ask(confirmed) {
     this.confirmed = confirmed;
     this.overwrite.hidden = confirmed === null;
   }
 
-  tell(...parts) { this.told.replaceChildren(...parts); }
+  tell(...parts) {
+    this.ask(null);
+    this.text.hidden = true;
+    this.told.replaceChildren(...parts);
+  }
 
   // Write a file, "save" or "report", of this state and name; an existing one after a confirmation.
-  write(kind, fields = { ...this.shown(), name: this.name.value }) {
-    this.ask(null);
-    this.tell(kind === "report" ? "The report is being written ..." : "");
+  write(kind, fields = { ...this.shown, name: this.name.value }) {
+    this.tell(kind === "report" ? "The report is being written …" : "");
     this.requests.ask(kind, fields, (answer) => {
       if (answer.problem) {
         this.tell(answer.problem);
       } else if (answer.exists) {
-        this.tell(`${answer.exists} exists already. `);
+        this.tell(`${answer.exists} exists already.`);
         this.ask(() => this.write(kind, { ...fields, overwrite: true }));
       } else if (answer.saved) {
-        this.tell(`Saved as ${answer.saved}. `, ...this.link(answer));
+        this.tell(`Saved as ${answer.saved}. `);
+        if (answer.link) made(this.told, "a", { href: answer.link, target: "_blank", rel: "noopener" }, "Open it");
       }
     });
   }
 
-  // Link to a report that a server shows.
-  link({ link }) {
-    if (!link) return [];
-    const found = document.createElement("a");
-    Object.assign(found, { href: link, target: "_blank", rel: "noopener", textContent: "Open it" });
-    return [found];
-  }
+  // State, and that of the reference if it was frozen.
+  get shown() { return { state: this.explore.state, reference: this.explore.frozen?.state ?? null }; }
 
   // Show the Python text, chosen, and copy it where the browser allows it.
   copy() {
-    this.ask(null);
-    this.requests.ask("python", this.shown(), (answer) => {
-      this.text.hidden = Boolean(answer.problem);
-      if (answer.problem) { this.tell(answer.problem); return; }
-      this.text.value = answer.text;
+    this.requests.ask("python", this.shown, (answer) => {
+      this.tell(answer.problem ?? "");
+      if (answer.problem) return;
+      Object.assign(this.text, { value: answer.text, hidden: false });
       this.text.select();
       const copied = navigator.clipboard ? navigator.clipboard.writeText(answer.text) : Promise.reject(new Error());
-      copied.then(() => this.tell("Copied."), () => this.tell("Copy the chosen text."));
+      copied.then(() => { this.told.textContent = "Copied."; }, () => { this.told.textContent = "Copy the chosen text."; });
     });
   }
 }

@@ -9,7 +9,7 @@ class Kernel {
     this.receive = ({ page, answer }, buffers) => {
       if (page === this.page) this.onanswer(restored(answer, fromBuffers(buffers)));
     };
-    this.end = () => this.onlost("The kernel has ended.");
+    this.end = () => this.onlost("The kernel has ended. Start it again, and run this cell.");
     model.on("msg:custom", this.receive);
     model.on("comm_live_update comm:close", this.end);
   }

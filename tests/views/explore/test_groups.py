@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.starters import STARTERS
+from kinetostatics.cli import main
 from kinetostatics.views.explore import groups
 from kinetostatics.views.explore.forms import fields, number_text, text_of, value_of, with_texts
 from kinetostatics.views.explore.session import Session
@@ -180,6 +181,34 @@ def test_another_kind_of_cam_gets_its_own_keys():
     assert list(raw["groups"][0]["cam"]) == ["kind", "cosine"]
 
 
+@every("kind", ["roller follower", "flat follower", "swinging follower"])
+def test_a_law_of_segments_rises_dwells_and_returns(kind):
+    raw = added(groups.template("crank-slider"), kind)
+    raw = groups.edited(raw, {"do": "change", "at": ["groups", 1], "keys": {"cam.kind": "joined"}})
+    assert np.isfinite(groups.scene_of(raw).solve(24).balancing_torque).all()
+    unit = "deg" if kind.startswith("swinging") else "mm"
+    text = f"harmonic, 50 {unit}, 60 {unit}, 180 deg; harmonic, 60 {unit}, 50 {unit}, 180 deg"
+    raw = groups.edited(raw, {"do": "change", "at": ["groups", 1], "keys": {"cam.segments": text}})
+    assert raw["groups"][1]["cam"]["segments"][0] == {
+        "kind": "harmonic",
+        "start": f"50 {unit}",
+        "end": f"60 {unit}",
+        "angle": "180 deg",
+    }
+    for wrong, words in SEGMENTS_WITH_FAULTS.items():
+        change = {"do": "change", "at": ["groups", 1], "keys": {"cam.segments": wrong}}
+        with pytest.raises(groups.ChainError, match=words):
+            groups.edited(raw, change)
+
+
+SEGMENTS_WITH_FAULTS = {
+    "harmonic, 50 mm": r"cam\.segments\[1\]\.end is missing",
+    "spline, 1 mm, 2 mm, 3 deg": r"cam\.segments\[1\]\.kind is 'spline', allowed",
+    "dwell, 50 mm, 180 deg, 7": r"cam\.segments\[1\]\.value 3 is not a key here",
+    ";": r"cam\.segments\[1\]\.kind is '', allowed",
+}
+
+
 def test_crank_and_drive_change_as_a_part():
     raw = groups.edited(groups.template("four-bar"), {"do": "change", "at": [], "keys": {"crank_speed": "90 rpm"}})
     assert groups.scene_of(raw).crank_speed == pytest.approx(3.0 * np.pi)
@@ -322,7 +351,7 @@ def test_every_field_is_told_of(part):
     name, kind = part
     for field in fields(groups.MODELS[name][kind], {}):
         assert field["text"].endswith("."), field["key"]
-        assert field["form"] in ("text", "number", "choice", "list", "place", "places")
+        assert field["form"] in ("text", "number", "choice", "list", "place", "places", "segments")
         assert field["form"] != "choice" or len(field["choices"]) > 0
         assert "file" not in field["text"]
 
@@ -408,6 +437,22 @@ def test_a_number_without_a_place_in_the_table_stays_beside_it():
     assert notes == ["changed numbers are lost with the part that had them: coupler.centre.along"]
 
 
+@every(
+    "case",
+    [
+        (["groups", 1], ["O", "A", "B", "O2", "C"]),
+        (["loads", 0], ["crank", "coupler", "rocker", "coupler2", "slider2", "frame"]),
+        (["loads", 2], ["slider2"]),
+    ],
+    ids=str,
+)
+def test_names_are_chosen_among_joints_links_or_sliders(case):
+    at, names = case
+    raw = added(added(groups.template("four-bar"), "slider"), "process force", "loads")
+    part = next(item for item in groups.parts_of({"chain": raw})["parts"] if item["at"] == at)
+    assert next(field["choices"] for field in part["fields"] if field["key"] == "on") == names
+
+
 def test_numbers_of_a_removed_group_are_named():
     state = state_of("chain", **{"slider2.mass": 0.7, "slider.mass": 0.6})
     found, notes = groups.state_after(state, {"do": "remove", "at": ["groups", 1]})
@@ -480,6 +525,12 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     assert np.array_equal(
         names["solution"].balancing_torque, session.scene(looked["state"]).solve(360).balancing_torque
     )
+
+
+@every("options", [[], ["compressor", "--new", "cam"]], ids=str)
+def test_the_command_needs_a_case_or_a_mechanism_to_begin_with(options, capsys):
+    assert main(["explore", *options, "--no-browser"]) == 2
+    assert "explore: give a case, or --new with a mechanism to begin with" in capsys.readouterr().err
 
 
 def test_a_hostile_chain_in_a_state_ends_in_a_message():

@@ -43,14 +43,14 @@ def test_what_json_has_no_number_for_is_null_but_in_arrays():
     )
     assert (found["nan"], found["inf"]) == (None, None)
     np.testing.assert_array_equal(found["curve"]["of"], [np.nan, np.inf])
-    np.testing.assert_array_equal(found["whole"], [0.0, 1.0])
+    np.testing.assert_array_equal(found["int"], [0.0, 1.0])
 
 
 @every("size", range(1, 10))
 def test_arrays_begin_where_typed_arrays_may(size):
     """A Float64Array of a browser begins at a multiple of 8 bytes."""
     message = framed(*packed({"text": "x" * size, "first": np.zeros(size, np.float32), "second": np.zeros(2)}))
-    header, buffers = unframed(message)
+    _, buffers = unframed(message)
     assert message.index(bytes(4 * size)) % ALIGNMENT == 0
     assert len(message) % ALIGNMENT == 0
     assert [len(buffer) for buffer in buffers] == [4 * size, 16]
