@@ -288,6 +288,8 @@ def report(options):
 def explore(options):
     from ..views.explore.server import serve
 
+    if (options.case is None) == (options.new is None):
+        raise ParameterError("explore: give a case, or --new with a mechanism to begin with")
     checks.require("--folder", files.folder_write_problem(options.folder) if options.folder else None)
     subject = options.case
     if options.new:

@@ -197,7 +197,10 @@ def ordinary_size(arrays):
     others = []
     for values in rows:
         missing = np.isnan(values)
-        reach = max(1, values.shape[-1] // GAP_REACH) if missing.any() else 0
+        if not missing.any():
+            others.append(values)
+            continue
+        reach = max(1, values.shape[-1] // GAP_REACH)
         beside = np.any([np.roll(missing, step, axis=-1) for step in range(-reach, reach + 1)], axis=0)
         others.append(np.where(beside, np.nan, values))
     sizes, away = (np.concatenate([np.ravel(row) for row in part]) for part in (rows, others))
@@ -220,9 +223,12 @@ def hidden_beyond(limit, values):
     return np.where(sizes <= limit, values, np.nan)
 
 
-def drawn_limit(arrays):
-    """Largest drawn magnitude, so that a few unbounded values do not flatten the rest; or infinity."""
-    most = ordinary_size(arrays)
+def drawn_limit(arrays, most=None):
+    """Largest drawn magnitude, so that a few unbounded values do not flatten the rest; or infinity.
+
+    `most` is their `ordinary_size`, if it is known.
+    """
+    most = ordinary_size(arrays) if most is None else most
     beyond = any(np.any(np.abs(array) > most) for array in arrays)
     return DRAWN_RATIO * most if beyond else np.inf
 

@@ -43,7 +43,7 @@ def driver():
 
 @pytest.fixture
 def explored(driver):
-    """Opens explore pages: `explored("pumpjack", "--variant", "weights")`, each with a server that ends with the test."""
+    """Opens explore pages, each of a server of its own: `explored("pumpjack", "--variant", "weights")`."""
     from support.explored import ExplorePage, explore_server
 
     with ExitStack() as servers:

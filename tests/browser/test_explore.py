@@ -59,7 +59,8 @@ def press(page, *keys, held=()):
 def test_page_opens_without_errors_and_asks_its_own_server_only(page, address):
     assert page.severe() == []
     urls = [url for url in page.asked() if not url.startswith("data:")]
-    assert urls and all(url.startswith(address.partition("#")[0]) for url in urls)
+    assert urls
+    assert all(url.startswith(address.partition("#")[0]) for url in urls)
     assert_shows(page, scene())
     assert "balancing torque" in page.find(".figure figcaption").text
 
@@ -129,7 +130,9 @@ def test_machine_that_cannot_be_assembled_is_a_ghost_until_it_can(page):
     problem = page.find(".problem")
     with pytest.raises(ks.KinetostaticsError) as told:
         scene("plain", coupler_length=0.25).solve(360)
-    assert problem.text == str(told.value)
+    angles = str(told.value).partition(". Change")[0]
+    assert problem.text.startswith(angles)
+    assert "56.4427 .. 123.557 deg" in angles
     assert page.script("return page.shown") is None
     assert "ghost" in page.find(".drawing > g").get_attribute("class")
     assert all("stale" in chart.get_attribute("class") for chart in page.all(".figure .chart"))
@@ -196,7 +199,9 @@ def test_crank_turns_under_the_pointer(page):
 def test_motor_speed_is_that_of_steady_running(page):
     page.slide("slider.mass", 700)
     page.script("page.curves.choose('motor speed', true)")
-    values = page.wait(lambda: page.script("return page.curves.runs[0] && page.curves.runs[0].quantities['motor speed'].values"))
+    values = page.wait(
+        lambda: page.script("return page.curves.runs[0] && page.curves.runs[0].quantities['motor speed'].values")
+    )
     variant = ks.load_case(CASE).variants[VARIANT]
     run = ks.drive.steady(scene(slider__mass=700.0), variant.motor, variant.flywheel, angles=360)
     np.testing.assert_allclose(values, run.motor_speed, rtol=1e-9)
@@ -242,11 +247,18 @@ def test_narrow_page_has_one_column_without_scrolling_aside(page):
 def test_hostile_texts_of_a_case_stay_texts(driver, tmp_path):
     path = tmp_path / "hostile.toml"
     hostile = "<img src=x onerror=document.body.dataset.broken=1>"
-    path.write_text(
-        f'title = "{hostile}"\nreference = "{hostile}"\n[common]\nmechanism = "crank-slider"\ncrank_speed = "960 rpm"\ncrank_length = "50 mm"\n'
-        f'coupler_length = "200 mm"\nslider.mass = "1 kg"\n[variants."{hostile}"]\n',
-        encoding="utf-8",
-    )
+    lines = [
+        f'title = "{hostile}"',
+        f'reference = "{hostile}"',
+        "[common]",
+        'mechanism = "crank-slider"',
+        'crank_speed = "960 rpm"',
+        'crank_length = "50 mm"',
+        'coupler_length = "200 mm"',
+        'slider.mass = "1 kg"',
+        f'[variants."{hostile}"]',
+    ]
+    path.write_text("\n".join(lines), encoding="utf-8")
     with explore_server(path) as address:
         page = ExplorePage(driver, address)
         page.settled()

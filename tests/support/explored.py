@@ -45,9 +45,11 @@ class ExplorePage:
         return self.driver.execute_script(before + text, *values)
 
     def find(self, selector):
+        """First element of a selector of CSS."""
         return self.driver.find_element(By.CSS_SELECTOR, selector)
 
     def all(self, selector):
+        """All elements of a selector of CSS."""
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     @property

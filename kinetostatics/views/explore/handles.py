@@ -94,9 +94,12 @@ def handles(solution):
     return _in_rows(points.all(), points.crank_pins(), CLOSE * points.size)
 
 
-def handle_data(solution):
-    """Handles of a solution for a page, their places (N, 2) in single precision, and the snapping step, m."""
-    points = _Points(solution)
+def handle_data(solution, places=None):
+    """Handles of a solution for a page, their places (N, 2) in single precision, and the snapping step, m.
+
+    `places` are those of the numbers of its scene, if they are known.
+    """
+    points = _Points(solution, places)
     return {
         "handles": [
             {
@@ -191,8 +194,9 @@ def _words(path):
 class _Points:
     """Handles of a solution, from the dimensions of its parts and loads."""
 
-    def __init__(self, solution):
+    def __init__(self, solution, places=None):
         self.solution, self.mechanism, self.motion = solution, solution.mechanism, solution.dynamics
+        self.places = solution.places if places is None else places
         self.shape = Shape(self.motion)
         self.size = self.shape.size
 
@@ -220,7 +224,7 @@ class _Points:
         tables |= {("mechanism", "groups", row): group.dimensions for row, group in enumerate(made.groups)}
         tables |= {("loads", row): load.dimensions(made) for row, load in loads if isinstance(load, Load)}
         known = {(*steps, *inner): item for steps, table in tables.items() for inner, item in table.items()}
-        places = self.solution.places.items()
+        places = self.places.items()
         return [(path, place.steps, known[place.steps]) for path, place in places if place.steps in known]
 
     def handle(self, paths, steps, dimensions):
@@ -297,7 +301,7 @@ class _Points:
     def circle(self, paths, circle):
         """A point of a circle."""
         centre, ray = self.at(circle.centre), np.array(DIAGONAL)
-        radius = self.solution.places[paths[0]].value(self.solution)
+        radius = self.places[paths[0]].value(self.solution)
 
         def measure(place, index):
             return [ray @ (place - centre[:, index])]
@@ -337,7 +341,7 @@ class _Points:
     def turned_line(self, paths, angle):
         """Point of a line that turns about a joint; the line of a slot about the joint that slides in it."""
         carrier = self.mechanism.joints[angle.at].link
-        base, value = math.atan2(*angle.start[::-1]), self.solution.places[paths[0]].value(self.solution)
+        base, value = math.atan2(*angle.start[::-1]), self.places[paths[0]].value(self.solution)
         ray = np.array([math.cos(base + value), math.sin(base + value)])
         vertex = self.at(angle.at)
         position = vertex + ARM * self.size * ray[:, None]

@@ -247,7 +247,7 @@ def look(session, request):
         "period": float(np.degrees(scene.period)),
         "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
-        **handle_data(solution),
+        **handle_data(solution, scene.places),
     }
 
 
@@ -281,13 +281,14 @@ def curve(solution, known):
     values = np.stack([np.broadcast_to(part, shape) for part in (parts if known.vector else (parts,))])
     values = zeroed(values, rounding)
     size = np.hypot(*values) if known.vector else values
-    factor, unit = display_unit(known.unit, [size])
-    limit = drawn_limit([np.abs(size)])
+    most = ordinary_size([size])
+    factor, unit = display_unit(known.unit, [most])
+    limit = drawn_limit([size], most)
     return {
         "label": known.label,
         "unit": pretty_unit(unit),
         "factor": factor,
-        "decimals": decimals(factor * ordinary_size([size])),
+        "decimals": decimals(factor * most),
         "vector": known.vector,
         "sight": factor * limit if np.isfinite(limit) else None,
         "values": values,

@@ -11,7 +11,11 @@ export function restored(value, read) {
 
 // Reads arrays from base64 texts.
 export function fromBase64(texts) {
-  return (number, kind) => new KINDS[kind](Uint8Array.from(atob(texts[number]), (sign) => sign.charCodeAt(0)).buffer);
+  return (number, kind) => {
+    const signs = atob(texts[number]), bytes = new Uint8Array(signs.length);
+    for (let place = 0; place < bytes.length; place += 1) bytes[place] = signs.charCodeAt(place);
+    return new KINDS[kind](bytes.buffer);
+  };
 }
 
 // Reads arrays from ArrayBuffers or views of bytes at any offset.

@@ -38,7 +38,7 @@ const significant = (value) => (Number.isFinite(value) ? String(Number(value.toP
 export class Chart {
   constructor(parent, { label = "", unit = "", plane = false, period = 360, height = 220 } = {}) {
     Object.assign(this, { parent, label, unit, plane, period, height, sight: Infinity, curves: [], area: null });
-    Object.assign(this, { range: null, zoom: null, angle: null, tips: null, drag: null, onchoose: null });
+    Object.assign(this, { range: null, zoom: null, angle: null, tips: null, drag: null, onchoose: null, drawn: [] });
     this.svg = element("svg", parent, { class: `chart ${plane ? "plane" : "turn"}`, role: "img", tabindex: 0 });
     this.build();
     this.listen();
@@ -126,7 +126,7 @@ export class Chart {
   }
 
   draw() {
-    const { svg, width, height } = this;
+    const { width, height } = this;
     this.settle();
     let [across, up] = this.zoom || this.range || [this.plane ? [-1, 1] : [0, this.period], [-1, 1]];
     const [wide, tall] = [width - LEFT - RIGHT, height - TOP - BOTTOM];
@@ -136,9 +136,9 @@ export class Chart {
       [across, up] = [about(across, wide), about(up, tall)];
     }
     Object.assign(this, { across, up, wide, tall, scaleX: wide / spanOf(across), scaleY: tall / spanOf(up) });
-    put(svg, { viewBox: `0 0 ${width} ${height}`, "aria-label": this.title });
-    put(this.inner, { width: wide, height: tall });
-    this.axes();
+    const seen = [...across, ...up, width, this.label, this.unit, this.period].join("\n");
+    if (seen !== this.seen) this.axes();
+    this.seen = seen; // what the axes show
     this.strokes();
     this.point();
   }
@@ -159,6 +159,8 @@ export class Chart {
 
   axes() {
     const { across, up, wide, tall, plane } = this, [stepX, stepY] = this.steps(), corner = `translate(${LEFT} ${TOP})`;
+    put(this.svg, { viewBox: `0 0 ${this.width} ${this.height}`, "aria-label": this.title });
+    put(this.inner, { width: wide, height: tall });
     const columns = multiples(stepX, across), rows = multiples(stepY, up);
     const column = (value) => `M${short(this.x(value))} 0v${tall}`;
     const row = (value) => `M0 ${short(this.y(value))}h${wide}`;
@@ -203,8 +205,11 @@ export class Chart {
       element("path", lines);
       element("circle", dots, { r: 3.5 });
     }
+    const place = [this.scaleX, this.scaleY, this.across[0], this.up[1], this.sight, this.period].join();
     [...lines.children].forEach((path, number) => {
-      const curve = curves[number];
+      const curve = curves[number], before = this.drawn[number];
+      if (before && before.curve === curve && before.place === place) return; // the reference, mostly
+      this.drawn[number] = { curve, place };
       put(path, { d: curve ? this.trace(curve) : "" });
       if (!curve) return;
       const { thin, colour, dash } = curve;

@@ -4,7 +4,7 @@ import { Chart } from "./chart.js";
 import { button, checkbox, made } from "./html.js";
 
 export const NOW = "#1f4e79", BEFORE = "#5b6873";
-const DASHES = "5 3", HEIGHT = 190;
+const DASHES = "5 3", HEIGHT = 205, PLANE_HEIGHT = 290;
 const RUNNING = "motor speed"; // of a case with a drive; it comes after the curves
 
 // Values of a quantity in its shown unit, of a vector its magnitude.
@@ -25,11 +25,11 @@ class Figure {
     Object.assign(this, { name, plane, element: made(parent, "figure", { class: "figure" }) });
     const caption = made(this.element, "figcaption");
     this.label = made(caption, "b");
-    this.values = made(caption, "output", { class: "values" });
-    this.before = made(caption, "output", { class: "values before" });
+    this.values = made(caption, "span", { class: "values" });
+    this.before = made(caption, "span", { class: "values before" });
     this.turns = button(caption, plane ? "over the angle" : "hodograph", onplane, { class: "plain" });
     this.remove = button(caption, "×", onremove, { class: "plain remove" });
-    this.chart = new Chart(made(this.element, "div", { class: "place" }), { plane, height: HEIGHT });
+    this.chart = new Chart(made(this.element, "div", { class: "place" }), { plane, height: plane ? PLANE_HEIGHT : HEIGHT });
     this.words = made(this.element, "p", { class: "words" });
     this.chart.onchoose = onchoose;
   }
@@ -46,9 +46,11 @@ class Figure {
     this.remove.setAttribute("aria-label", `remove ${item.label}`);
     this.turns.setAttribute("aria-label", `${item.label}: ${plane ? "magnitude over the crank angle" : "hodograph"}`);
     const curve = (answer, quantity, style) => {
+      const before = this.curves?.find((other) => other.quantity === quantity && other.factor === item.factor);
+      if (before && before.name === style.name) return before;
       const own = { ...quantity, factor: item.factor }, { angle, period } = answer;
       const [x, y] = plane ? parts(own) : [angle, magnitudes(own)];
-      return { ...style, x, y, period, angle };
+      return { ...style, x, y, period, angle, quantity, factor: item.factor };
     };
     const curves = [curve(shown, item, { name: "shown", colour: NOW })];
     if (other && other.vector === item.vector) {
@@ -89,7 +91,7 @@ class Figure {
 export class Curves {
   // `onchosen()` is called when other quantities are chosen, `onchoose(degrees)` when a crank angle is.
   constructor(parent, { onchosen, onchoose }) {
-    Object.assign(this, { onchosen, onchoose, figures: new Map(), chosen: [], planes: new Set() });
+    Object.assign(this, { onchosen, onchoose, figures: new Map(), chosen: null, planes: new Set() });
     Object.assign(this, { answers: [null, null], runs: [null, null] });
     const bar = made(parent, "div", { class: "bar" });
     this.choice = made(bar, "details", { class: "choice" });
@@ -104,20 +106,20 @@ export class Curves {
   }
 
   // Names of the library's quantities that are shown.
-  get names() { return this.chosen.filter((name) => name !== RUNNING); }
+  get names() { return (this.chosen ?? []).filter((name) => name !== RUNNING); }
 
   get running() { return this.drive && this.chosen.includes(RUNNING); }
 
   // Quantities that can be chosen, with a box to search them; the motor's speed with a drive.
   offer(known, drive) {
     this.drive = drive;
-    const quantities = drive ? [...known, { name: RUNNING, label: RUNNING, unit: "rpm" }] : known;
+    const quantities = drive ? [...known, { name: RUNNING, label: RUNNING }] : known;
     const { choice } = this, panel = document.createElement("div");
     panel.className = "panel";
     const search = made(panel, "input", { type: "search", placeholder: "search quantities", "aria-label": "search quantities" });
     const list = made(panel, "div", { class: "list" });
-    this.boxes = new Map(quantities.map(({ name, label, unit }) => {
-      const input = checkbox(list, `${label} [${unit || "1"}]`, this.chosen.includes(name), (wanted) => this.choose(name, wanted));
+    this.boxes = new Map(quantities.map(({ name, label }) => {
+      const input = checkbox(list, label, this.chosen.includes(name), (wanted) => this.choose(name, wanted));
       return [name, input];
     }));
     search.addEventListener("input", () => {

@@ -124,7 +124,9 @@ export class Explore {
   open(answer) {
     if (answer.problem) { this.say(answer.problem); return; }
     const kept = this.address.read();
-    Object.assign(this, { opened: answer, variants: answer.variants, frozen: parsed(kept.compared) });
+    const frozen = parsed(kept.compared), planes = parsed(kept.planes);
+    Object.assign(this, { opened: answer, variants: answer.variants, at: Number(kept.angle) || 0 });
+    if (typeof frozen?.label === "string" && frozen.state) this.frozen = frozen;
     if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
     this.keep = new Keep(this.keeping, this, answer.file);
@@ -132,8 +134,7 @@ export class Explore {
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
     this.curves.chosen = answer.show ?? [];
-    this.curves.planes = new Set(parsed(kept.planes, []));
-    this.at = Number(kept.angle) || 0;
+    if (Array.isArray(planes)) this.curves.planes = new Set(planes);
     this.present();
   }
 
@@ -163,9 +164,14 @@ export class Explore {
   }
 
   change(state, still = false) {
-    this.history.keep(state, still && this.moving);
-    this.moving = still;
+    this.keep(state, still);
     this.present();
+  }
+
+  // A movement begins with the first state that differs: it must not replace the state before it.
+  keep(state, still) {
+    const kept = this.history.keep(state, this.moving);
+    this.moving = still && (kept || this.moving);
   }
 
   drag(fields, still = true) {
@@ -194,7 +200,7 @@ export class Explore {
       if (answer.problem) { this.refuse(answer); return; }
       this.described = structure;
       this.known = answer;
-      if (!this.curves.chosen.length) this.curves.chosen = firstCurves(answer.quantities);
+      this.curves.chosen ??= firstCurves(answer.quantities);
       this.curves.offer(answer.quantities, answer.drive);
       this.parameters.describe(answer.parameters);
       this.handles.describe(answer.parameters);
@@ -256,12 +262,12 @@ export class Explore {
 
   receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
-      this.history.keep(answer.state, this.moving);
-      this.moving = asked.still;
+      this.keep(answer.state, asked.still);
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);
     }
+    if (keyOf({ ...answer.state, values: {} }) !== this.described) return; // of the tab before
     this.answered = answer;
     if (answer.problem) { this.refuse(answer); return; }
     const first = !this.ready;

@@ -1,4 +1,6 @@
 // States that were shown: undo, redo, and the fields of an address that reopen one.
+const MOST_STATES = 1000; // that can be undone
+
 export class History {
   constructor(first) { Object.assign(this, { states: [first], place: 0 }); }
 
@@ -8,12 +10,15 @@ export class History {
 
   get last() { return this.place === this.states.length - 1; }
 
-  // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on).
+  // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on). Whether it
+  // differs from the present one.
   keep(state, still = false) {
-    if (JSON.stringify(state) === JSON.stringify(this.now)) return;
+    if (JSON.stringify(state) === JSON.stringify(this.now)) return false;
     this.states.length = this.place + 1;
     if (still) this.states[this.place] = state; else this.states.push(state);
+    if (this.states.length > MOST_STATES) this.states.shift();
     this.place = this.states.length - 1;
+    return true;
   }
 
   move(steps) {

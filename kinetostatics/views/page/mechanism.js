@@ -9,6 +9,7 @@ const LARGEST = 1.2; // of the longest arrow
 const SLACK = 0.02; // of the frame, by which a machine may leave it
 const NEAR = 16; // pixels from the crank's pin, at which the pointer takes it
 const TURNS = 1e-3; // radians by which the direction to a joint on the crank may miss the crank angle
+const ONE_COLUMN = 720; // pixels, as in explore.css
 const PACES = { "2 s": 2, "6 s": 6, "15 s": 15, "40 s": 40 };
 
 const union = (one, other) => one.map((end, place) => (place < 2 ? Math.min : Math.max)(end, other[place]));
@@ -39,9 +40,21 @@ export class Mechanism {
       onturn(index);
     });
     this.crank();
+    new ResizeObserver(() => this.fit()).observe(parent);
   }
 
-  tallest() { return Math.round(Math.max(180, Math.min(560, 0.56 * window.innerHeight))); }
+  // Height limit of the drawing: in one column all else scrolls below it.
+  tallest() {
+    const share = this.parent.closest(".explore").clientWidth < ONE_COLUMN ? 0.32 : 0.56;
+    return Math.round(Math.max(180, Math.min(560, share * window.innerHeight)));
+  }
+
+  fit() {
+    const tallest = this.tallest();
+    if (tallest === this.drawing.tallest) return;
+    this.drawing.tallest = tallest;
+    this.drawing.draw();
+  }
 
   controls() {
     const bar = made(this.parent, "div", { class: "clock" });

@@ -25,10 +25,21 @@ class Row {
       else if (text !== "" && Number.isFinite(Number(text))) onchange(path, Number(text) / factor, still);
     };
     this.slider.addEventListener("input", () => { this.moving = true; set(this.slider.value, true); });
-    this.slider.addEventListener("change", () => { this.moving = false; set(this.slider.value, false); });
+    const rest = () => { this.moving = false; set(this.slider.value, false); };
+    this.slider.addEventListener("change", rest);
+    this.slider.addEventListener("blur", () => { if (this.moving) rest(); });
     this.number.addEventListener("input", () => { this.typing = true; });
     this.number.addEventListener("change", () => { this.typing = false; set(this.number.value, false); });
-    this.number.addEventListener("blur", () => { this.typing = false; this.show(this.value); });
+    this.number.addEventListener("blur", () => this.reset());
+    this.number.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.reset();
+      if (this.typing && event.ctrlKey) event.stopPropagation(); // undo in the text
+    });
+  }
+
+  reset() {
+    this.typing = false;
+    this.show(this.value);
   }
 
   text(value) { return String(Number((value * this.field.factor).toPrecision(DIGITS))); }

@@ -20,6 +20,7 @@ class Report {
     for (const item of Object.values(this.data.quantities)) {
       item.parts = item.values.map((values, row) => values && parted(values, counts[row]));
     }
+    this.sorted = counts.map((_, row) => this.angles(row));
     this.cells = all("td[data-quantity]");
     this.drawings = all(".panel svg").map((svg, row) => this.drawing(svg, row));
     this.charts = Object.fromEntries(all("[data-figure]").map((place) => [place.dataset.figure, this.chart(place)]));
@@ -49,15 +50,21 @@ class Report {
     return chart;
   }
 
-  // Degrees and parts of a quantity over the period of a machine, with extremes, kinks and jumps between its angles.
-  curve(name, row) {
-    const { step, between, quantities } = this.data, parts = quantities[name].parts[row];
-    if (!parts) return null;
-    const degrees = [...parts[0].keys()].map((place) => place * step).concat(...between[row]);
+  // Degrees of a machine over its period, with those of extremes, kinks and jumps between its angles, and their order.
+  angles(row) {
+    const degrees = Array.from({ length: this.data.counts[row] }, (_, place) => place * this.data.step);
+    degrees.push(...this.data.between[row]);
     const order = [...degrees.keys()].sort((one, other) => degrees[one] - degrees[other]);
-    const sorted = (values) => order.map((place) => values[place]);
-    const others = parted(quantities[name].between[row], between[row].length);
-    return { angle: sorted(degrees), parts: parts.map((part, place) => sorted([...part, ...(others[place] || [])])) };
+    return { order, degrees: order.map((place) => degrees[place]) };
+  }
+
+  // A quantity of a machine at these angles, or null.
+  curve(name, row) {
+    const { between, quantities } = this.data, parts = quantities[name].parts[row];
+    if (!parts) return null;
+    const { degrees, order } = this.sorted[row], others = parted(quantities[name].between[row], between[row].length);
+    const all = parts.map((part, place) => [...part, ...(others[place] || [])]);
+    return { angle: degrees, parts: all.map((part) => order.map((place) => part[place])) };
   }
 
   // Curves of all machines that are not hidden, of a quantity or of what the figure holds itself.

@@ -9,8 +9,11 @@ export function element(name, parent, attributes = {}, text = "") {
   return made;
 }
 
+// Equal values are not set again: that would cost a layout.
 export function put(target, attributes) {
-  for (const [key, value] of Object.entries(attributes)) target.setAttribute(key, value);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (target.getAttribute(key) !== `${value}`) target.setAttribute(key, value);
+  }
 }
 
 export const short = (value) => Math.round(100 * value) / 100;

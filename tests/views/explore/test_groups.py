@@ -8,6 +8,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.starters import STARTERS
+from kinetostatics.cli import main
 from kinetostatics.views.explore import groups
 from kinetostatics.views.explore.forms import fields, number_text, text_of, value_of, with_texts
 from kinetostatics.views.explore.session import Session
@@ -524,6 +525,12 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     assert np.array_equal(
         names["solution"].balancing_torque, session.scene(looked["state"]).solve(360).balancing_torque
     )
+
+
+@every("options", [[], ["compressor", "--new", "cam"]], ids=str)
+def test_the_command_needs_a_case_or_a_mechanism_to_begin_with(options, capsys):
+    assert main(["explore", *options, "--no-browser"]) == 2
+    assert "explore: give a case, or --new with a mechanism to begin with" in capsys.readouterr().err
 
 
 def test_a_hostile_chain_in_a_state_ends_in_a_message():

@@ -180,7 +180,7 @@ def test_a_page_without_the_token_is_closed(name):
 
     assert served(closed) == (
         None,
-        (1008, "This address is of an earlier start; open the one that the command printed last."),
+        (1008, "This address is of an earlier start; open the one printed last."),
     )
 
 

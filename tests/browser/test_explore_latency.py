@@ -1,0 +1,88 @@
+"""How fast forces follow the hand: from a pointer event of the browser to the drawing and ten figures redrawn.
+
+Run by ``python -m pytest tests/browser/test_explore_latency.py --benchmark-only -n 0``, alone on the machine. The
+pointer moves 60 times a second. An event that comes while a machine is under way waits, and is counted from its own
+time, unless a newer one takes its place.
+"""
+
+import json
+import time
+from urllib.parse import quote
+
+import numpy as np
+import pytest
+
+from kinetostatics.views.explore.session import Session
+
+MEDIAN, WORST = 30.0, 50.0
+"""Limits of the latency and of its 95 % quantile, ms."""
+FIGURES, MOVES, PACE = 10, 150, 1.0 / 60.0
+WATCH = """
+page.latencies = [];
+page.shares = {draw: [], server: []};
+let moved = 0;
+addEventListener("pointermove", (event) => { moved = event.timeStamp; }, true);
+const drag = page.drag.bind(page), { onlook, send } = page.requests;
+page.drag = (fields, still) => drag({ ...fields, moved }, still);
+page.requests.send = (kind, fields) => {
+  fields.sent = performance.now();
+  return send.call(page.requests, kind, fields);
+};
+page.requests.onlook = (answer, asked) => {
+  const come = performance.now();
+  onlook(answer, asked);
+  page.root.getBoundingClientRect(); // with the layout
+  if (!asked.moved || answer.problem) return;
+  page.latencies.push(performance.now() - asked.moved);
+  page.shares.draw.push(performance.now() - come);
+  page.shares.server.push(come - asked.sent);
+};
+"""
+
+
+def shown_at_first(path, variant):
+    """Address fields that show ten quantities of a case."""
+    session = Session(path, variant)
+    described = session.answer({"id": 1, "kind": "describe", "state": {"variant": session.first, "values": {}}})
+    return "&show=" + quote(json.dumps([item["name"] for item in described["quantities"]][:FIGURES]))
+
+
+@pytest.mark.parametrize(
+    ("case", "variant", "handle"),
+    [("sawframe_2r63", "cam-circle", "cam.centre.x"), ("pumpjack", "weights", "rocker_pivot.x")],
+)
+def test_forces_follow_the_hand(benchmark, explored, driver, tell, case, variant, handle):
+    path = f"cases/{case}.toml"
+    driver.set_window_size(1600, 1200)
+    page = explored(path, "--variant", variant, fields=shown_at_first(path, variant))
+    page.settled()
+    assert len(page.all(".figure")) == FIGURES
+    box = page.find(f"[data-handle='{handle}'] .form").rect
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def pointer(kind, to_x, to_y):
+        fields = {"type": kind, "x": to_x, "y": to_y, "button": "left", "buttons": 1, "clickCount": 1}
+        driver.execute_cdp_cmd("Input.dispatchMouseEvent", fields)
+
+    def hand():
+        page.script(WATCH)
+        pointer("mousePressed", x, y)
+        for turn in np.linspace(0.0, 6 * np.pi, MOVES):
+            start = time.perf_counter()
+            pointer("mouseMoved", x + 12 * np.sin(turn), y + 8 * np.sin(1.7 * turn))
+            time.sleep(max(0.0, PACE - (time.perf_counter() - start)))
+        pointer("mouseReleased", x, y)
+        page.settled()
+
+    benchmark.pedantic(hand, rounds=1)
+    times = np.array(page.script("return page.latencies"))
+    shares = {name: np.median(values) for name, values in page.script("return page.shares").items()}
+    median, worst = np.quantile(times, [0.5, 0.95])
+    tell(
+        f"{case}: {median:.1f} ms median, {worst:.1f} ms at 95 %, of {times.size} machines; server and messages "
+        f"{shares['server']:.1f} ms, page {shares['draw']:.1f} ms"
+    )
+    assert times.size > MOVES / 6
+    assert page.severe() == []
+    assert median <= MEDIAN
+    assert worst <= WORST
