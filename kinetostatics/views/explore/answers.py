@@ -174,7 +174,7 @@ def sensitivities(scene, text) -> Sensitivities:
     NotGivenError
         A load or cam of the user's own does more than recorded arithmetic.
     DesignError
-        The output has no value.
+        The output has no finite value; or its quantity grows without bound, or has no correct digit somewhere.
     KinetostaticsError
         As of `Scene.solve`.
 
@@ -188,13 +188,15 @@ def sensitivities(scene, text) -> Sensitivities:
     [('crank_speed', 2.0), ('crank_length', 2.164), ('slider.mass', 1.0), ('coupler_length', -0.164)]
     """
     output: Any = parse_output(text, scene)
+    solution = scene.solve(COUNT)
+    if text := warning(solution, [extrema(solution, output.quantity)]):
+        raise DesignError(f"{output} has no derivatives. {text}")
     fixed = paths_without_derivative(scene.places, scene.mechanism)
     own = {path: value for path, value in scene.parameters.items() if isinstance(value, float) and path not in fixed}
     bounds = {path: (value - abs(value) - 1.0, value + abs(value) + 1.0) for path, value in own.items()}
     problem = Problem(scene, bounds, (output.quantity,), angles=ANGLES)
     value, slopes = problem.output(output, problem.start)
     if not np.isfinite(value):
-        scene.solve(ANGLES)
         raise DesignError(f"{output} has no finite value")
     rows = [
         Sensitivity(path, float(slope), float(slope * own[path] / value) if own[path] and value else np.nan)
