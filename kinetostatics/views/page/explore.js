@@ -164,12 +164,12 @@ export class Explore {
   }
 
   change(state, still = false) {
-    this.keep(state, still);
+    this.record(state, still);
     this.present();
   }
 
   // A movement begins with the first state that differs: it must not replace the state before it.
-  keep(state, still) {
+  record(state, still) {
     const kept = this.history.keep(state, this.moving);
     this.moving = still && (kept || this.moving);
   }
@@ -262,7 +262,7 @@ export class Explore {
 
   receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
-      this.keep(answer.state, asked.still);
+      this.record(answer.state, asked.still);
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);
