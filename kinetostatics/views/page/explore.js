@@ -129,7 +129,7 @@ export class Explore {
     if (typeof frozen?.label === "string" && frozen.state) this.frozen = frozen;
     if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
-    this.keep = new Keep(this.keeping, this, answer.file);
+    this.keeper = new Keep(this.keeping, this, answer.file);
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
