@@ -24,6 +24,7 @@ from ..machine.loads.points import PlacePairRule, PlaceRule
 from ..machine.loads.table import COLUMNS, VALUE_HEADINGS
 from ..numbers import checks
 from ..numbers.files import write_atomically
+from ..numbers.parameter_tree import Axis
 
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
 
@@ -183,7 +184,7 @@ def _keys(item, file=""):
         ):
             continue
         if isinstance(value, Guide):
-            found |= _nonzero_keys(value, guide_angle="rad", guide_offset="m")
+            found |= _guide_keys(value)
         elif isinstance(value, Link):
             link = _link_keys(value)
             found |= {name: _inline_table(link)} if link else {}
@@ -196,6 +197,15 @@ def _keys(item, file=""):
         else:
             found[name] = _value(value, rule, name)
     return found
+
+
+def _guide_keys(guide):
+    """Keys of a guide: two points for a direction along an axis, which an angle in radians would round."""
+    if type(guide.exact) is not Axis:
+        return _nonzero_keys(guide, guide_angle="rad", guide_offset="m")
+    (x, y), offset = guide.exact, _single_number(guide.guide_offset, "guide_offset")
+    points = (-offset * y, offset * x), (x - offset * y, y + offset * x)
+    return {"guide_through": f"[{', '.join(_numbers(point, 'm', 'guide_through') for point in points)}]"}
 
 
 def _value(value, rule, name):

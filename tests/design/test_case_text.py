@@ -102,8 +102,22 @@ def test_tables_are_written_to_files_beside_it(tmp_path):
         one, other = scene.solve(360), read.variant(name).scene.solve(360)
         assert one.period == other.period
         np.testing.assert_allclose(other.balancing_torque, one.balancing_torque, rtol=1e-13, atol=1e-13)
-    with pytest.raises(ks.errors.FileError, match="exists already"):
-        case_text.write_case(tmp_path / "made.toml", "Made", scenes)
+    case_text.write_case(tmp_path / "made.toml", "Made again", scenes)
+    with pytest.raises(ks.errors.FileError, match="made_engine_load_1.csv: exists already"):
+        case_text.write_case(tmp_path / "made.toml", "Made", {"engine": scenes["diagram"]})
+
+
+@pytest.mark.parametrize("points", [((0.6, 0.35), (0.6, -0.25)), ((0.1, -0.02), (1.0, -0.02)), ((0, 0), (0, 1))])
+def test_a_guide_along_an_axis_keeps_its_direction(tmp_path, points):
+    guide = ks.Guide.through(*points)
+    scene = ks.Scene(ks.crank_slider(0.05, 0.2, guide=ks.Guide(None, 0.0, guide.exact)), 10.0)
+    offset = ks.Guide(None, guide.guide_offset, guide.exact)
+    chain = ks.Mechanism("chain", ks.Crank(0.05), (ks.SliderGroup(2.0, offset),))
+    scenes = {"slider": scene, "chain": ks.Scene(chain, 10.0)}
+    read = ks.load_case(case_text.write_case(tmp_path / "made.toml", "Made", scenes))
+    for name, scene in scenes.items():
+        (one,), (other,) = scene.mechanism.guides.values(), read.variant(name).mechanism.guides.values()
+        assert (other.exact, other.guide_offset) == (one.exact, one.guide_offset)
 
 
 def test_a_cam_of_ones_own_is_refused(tmp_path):

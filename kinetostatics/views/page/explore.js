@@ -129,11 +129,11 @@ export class Explore {
     if (typeof frozen?.label === "string" && frozen.state) this.frozen = frozen;
     if (answer.token) this.address.write({ token: answer.token });
     this.title.textContent = answer.title;
-    this.keep = new Keep(this.keeping, this, answer.file);
+    this.keeper = new Keep(this.keeping, this, answer.file);
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
-    this.curves.chosen = answer.show ?? [];
+    this.curves.chosen = answer.show; // null: the first curves of the machine
     if (Array.isArray(planes)) this.curves.planes = new Set(planes);
     this.present();
   }
@@ -164,12 +164,12 @@ export class Explore {
   }
 
   change(state, still = false) {
-    this.keep(state, still);
+    this.record(state, still);
     this.present();
   }
 
   // A movement begins with the first state that differs: it must not replace the state before it.
-  keep(state, still) {
+  record(state, still) {
     const kept = this.history.keep(state, this.moving);
     this.moving = still && (kept || this.moving);
   }
@@ -262,7 +262,7 @@ export class Explore {
 
   receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
-      this.keep(answer.state, asked.still);
+      this.record(answer.state, asked.still);
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);

@@ -69,12 +69,12 @@ def test_a_state_is_kept_beside_its_reference(tmp_path, name):
 def test_every_variant_of_the_shipped_cases_is_saved_bit_for_bit(tmp_path, name):
     case = ks.load_case(name)
     session = Session(case, folder=tmp_path)
-    for variant in case.variants:
+    for number, variant in enumerate(case.variants):
         scene = case.variants[variant].scene
         numbers = {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0 and path != "sense"}
         values = {path: float(value) * (1 + 1e-7 / 3) for path, value in numbers.items() if path.endswith("mass")}
         state = {"variant": variant, "values": values}
-        found = kept(session, tmp_path, state=state, name=f"saved {variant}")
+        found = kept(session, tmp_path, state=state, name=f"saved {number}")
         assert "saved" in found, found["problem"]
         assert_same_bits(list(ks.load_case(found["path"]).variants.values())[-1].scene, session.scene(state))
 
