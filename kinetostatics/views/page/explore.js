@@ -133,7 +133,7 @@ export class Explore {
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
-    this.curves.chosen = answer.show ?? [];
+    this.curves.chosen = answer.show; // null: the first curves of the machine
     if (Array.isArray(planes)) this.curves.planes = new Set(planes);
     this.present();
   }
