@@ -18,13 +18,13 @@ from PIL import Image
 FOLDER = Path(__file__).parent / "explore"
 CASE, VARIANT, START = "sawframe_2r63", "upright-circle", {"spring.stiffness": 150e3}
 SHOWN, FOLDED = ["balancing_torque", "O"], ("coupler", "slider", "gravity", "drive")
-WIDTH, HEIGHT, SCALE = 1160, 560, 0.8
+WIDTH, HEIGHT, SCALE = 1160, 600, 0.8
 """Pixels of the page, and of the film for each of these."""
 RATE, TURN = 10, 6.0
 """Pictures a second; seconds of a turn."""
-COLOURS = 48
-STILL = 45
-"""Number of the picture that is kept for print."""
+COLOURS = 64
+STILL, STILL_SCALE = {"spring.stiffness": 400e3}, 1.3
+"""Numbers and scale of the picture for print."""
 POINTER = """
 const made = document.createElement("div");
 made.id = "pointer";
@@ -57,8 +57,7 @@ def page():
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
         driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
         try:
-            size = {"width": WIDTH, "height": HEIGHT, "deviceScaleFactor": SCALE, "mobile": False}
-            driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+            scale(driver, SCALE)
             address = next(line.strip() for line in server.stdout if line.startswith("http"))
             state = {"variant": VARIANT, "values": START}
             fields = {"state": json.dumps(state), "show": json.dumps(SHOWN)}
@@ -67,6 +66,12 @@ def page():
         finally:
             driver.quit()
             server.terminate()
+
+
+def scale(driver, times):
+    """Set the size of the page, and the pixels of a picture for each of it."""
+    size = {"width": WIDTH, "height": HEIGHT, "deviceScaleFactor": times, "mobile": False}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
 
 
 class Film:
@@ -107,14 +112,18 @@ class Film:
             *place,
         )
 
+    def seen(self):
+        """What the page shows, when all belongs to its state."""
+        self.wait()
+        return Image.open(BytesIO(self.driver.get_screenshot_as_png())).convert("RGB")
+
     def take(self):
         """One picture, a step of the crank after the one before."""
         self.wait()
         self.script("page.clock.turnTo(Math.round(arguments[0]))", self.angle)
         if self.script("return page.clock.running"):
             self.angle += 360.0 / TURN / RATE
-        png = self.driver.get_screenshot_as_png()
-        self.pictures.append(Image.open(BytesIO(png)).convert("RGB"))
+        self.pictures.append(self.seen())
 
     def rest(self, seconds):
         """Take pictures while the pointer rests."""
@@ -156,9 +165,8 @@ class Film:
         return tuple(self.script(f"{box} return [box.x + box.width / 2, box.y + box.height / 2]", selector))
 
 
-def filmed(driver):
-    """Pictures of the film: too soft springs, then the right ones; the cam's centre moved, and moved back by Undo."""
-    film = Film(driver)
+def play(film):
+    """Too soft springs, then the right ones; the cam's centre moved, and moved back by Undo."""
     film.rest(1.2)
     film.go(film.thumb("spring.stiffness", START["spring.stiffness"]), 1.0)
     film.press()
@@ -176,7 +184,16 @@ def filmed(driver):
     film.press()
     film.release()
     film.rest(2.2)
-    return film.pictures
+
+
+def still(film):
+    """A picture for print, larger and without the pointer."""
+    scale(film.driver, STILL_SCALE)
+    film.script("document.getElementById('pointer').remove(); page.clock.run(false); page.clock.turnTo(60)")
+    for path, value in STILL.items():
+        film.script("page.set(arguments[0], arguments[1], false)", path, value)
+    film.rest(1.0)  # all numbers belong to this state
+    return film.seen().quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
 
 
 def saved(pictures, path):
@@ -185,14 +202,15 @@ def saved(pictures, path):
     sheet = Image.new("RGB", (chosen[0].width, chosen[0].height * len(chosen)))
     for number, picture in enumerate(chosen):
         sheet.paste(picture, (0, number * picture.height))
-    palette = sheet.quantize(COLOURS, method=Image.Quantize.MEDIANCUT)
+    palette = sheet.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
     frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=1000 // RATE, loop=0, optimize=True)
 
 
 if __name__ == "__main__":
-    with page() as driver:
-        made = filmed(driver)
     FOLDER.mkdir(exist_ok=True)
-    made[STILL].save(FOLDER / "page.png", optimize=True)
-    saved(made, FOLDER / "film.gif")
+    with page() as driver:
+        film = Film(driver)
+        play(film)
+        saved(film.pictures, FOLDER / "film.gif")
+        still(film).save(FOLDER / "page.png", optimize=True)
