@@ -43,10 +43,7 @@ KINDS = {np.dtype(np.float32): "f4", np.dtype(np.float64): "f8"}
 
 
 def packed(answer):
-    """A nested answer as (header, buffers): JSON, and the bytes of its arrays, little-endian.
-
-    An array becomes {"array": its number, "kind": "f4" or "f8"}, a number that is not finite None.
-    """
+    """An answer as header and buffers: an array becomes {"array": number, "kind": "f4" or "f8"}, NaN becomes None."""
     buffers: list[bytes] = []
 
     def plain(item):

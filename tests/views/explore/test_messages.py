@@ -44,7 +44,7 @@ def test_what_json_has_no_number_for_is_null_but_in_arrays():
     )
     assert (found["nan"], found["inf"]) == (None, None)
     np.testing.assert_array_equal(found["curve"]["of"], [np.nan, np.inf])
-    np.testing.assert_array_equal(found["int"], [0.0, 1.0])
+    np.testing.assert_array_equal(found["whole"], [0.0, 1.0])
 
 
 @every("size", range(1, 10))
