@@ -76,61 +76,88 @@ class Gate:
         return by_token or by_ticket
 
 
-def application(gate, session_of_page, hosts):
-    """The Tornado application: the page, its module and style, its socket, and the reports that it made."""
-    require_tornado()
-    from tornado.web import Application, HTTPError, RequestHandler
-    from tornado.websocket import WebSocketClosedError, WebSocketHandler
+class Site:
+    """What a server gives to those who are let in, and the pages that are open."""
 
-    policy = POLICY.format(sockets=" ".join(f"ws://{host}" for host in sorted(hosts)))
-    contents = {
-        "/": ("text/html", resources.files(__package__).joinpath("page.html").read_bytes()),
-        "/explore.js": ("text/javascript", bundle("page.js").encode()),
-        "/explore.css": ("text/css", style().encode()),
-    }
-    reports: dict[str, Path] = {}
+    def __init__(self, gate, session_of_page, hosts):
+        self.gate, self.session_of_page, self.hosts = gate, session_of_page, hosts
+        self.policy = POLICY.format(sockets=" ".join(f"ws://{host}" for host in sorted(hosts)))
+        self.contents = {
+            "/": ("text/html", resources.files(__package__).joinpath("page.html").read_bytes()),
+            "/explore.js": ("text/javascript", bundle("page.js").encode()),
+            "/explore.css": ("text/css", style().encode()),
+        }
+        self.reports: dict[str, Path] = {}
+        self.pages: set = set()
 
-    def link(path):
-        """Address of a report that nobody can guess."""
+    def link(self, path):
+        """Address of a report, with random letters that others cannot guess."""
         address = f"/report/{secrets.token_urlsafe(TOKEN_BYTES)}"
-        reports[address] = Path(path)
+        self.reports[address] = Path(path)
         return address
+
+    def content(self, path):
+        """Kind and content at a path; None if there is nothing."""
+        if path in self.reports and self.reports[path].is_file():
+            return "text/html", self.reports[path].read_bytes()
+        return self.contents.get(path)
+
+
+def application(site):
+    """The Tornado application of a site."""
+    require_tornado()
+    from tornado.web import Application
+
+    handlers = [("/socket", _socket_handler(site)), (".*", _file_handler(site))]
+    return Application(handlers, websocket_max_message_size=MAX_MESSAGE, log_function=lambda handler: None)
+
+
+def _file_handler(site):
+    """Handler of files: the page, its module and style, and reports."""
+    from tornado.web import HTTPError, RequestHandler
 
     class File(RequestHandler):
         def set_default_headers(self):
             self.clear_header("Server")
-            report = self.request.path in reports
-            for name, value in {**HEADERS, "Content-Security-Policy": POLICY_OF_REPORT if report else policy}.items():
+            policy = POLICY_OF_REPORT if self.request.path in site.reports else site.policy
+            for name, value in {**HEADERS, "Content-Security-Policy": policy}.items():
                 self.set_header(name, value)
 
         def prepare(self):  # a name that leads to this machine from a foreign page has another host
-            if self.request.host not in hosts:
+            if self.request.host not in site.hosts:
                 raise HTTPError(403)
 
         def get(self):
-            path = self.request.path
-            if path in reports and reports[path].is_file():
-                kind, content = "text/html", reports[path].read_bytes()
-            elif path in contents:
-                kind, content = contents[path]
-            else:
+            found = site.content(self.request.path)
+            if found is None:
                 raise HTTPError(404)
+            kind, content = found
             self.set_header("Content-Type", f"{kind}; charset=utf-8")
             self.finish(content)
 
-    class Socket(WebSocketHandler):
-        """Requests of one page; it waits until an answer has gone, so one that does not read is not read either."""
+    return File
 
+
+def _socket_handler(site):
+    """Handler of requests of one page; it waits until an answer has gone, so a page that does not read is not read."""
+    from tornado.web import HTTPError
+    from tornado.websocket import WebSocketClosedError, WebSocketHandler
+
+    class Socket(WebSocketHandler):
         def initialize(self):
             self.conversation: Conversation | None = None
             self.sent: asyncio.Future | None = None
 
         def prepare(self):  # Tornado lets requests without an origin pass
-            if self.request.host not in hosts or self.request.headers.get("Origin") != f"http://{self.request.host}":
+            host, origin = self.request.host, self.request.headers.get("Origin")
+            if host not in site.hosts or origin != f"http://{host}":
                 raise HTTPError(403)
 
         def check_origin(self, origin):
             return True
+
+        def open(self):
+            site.pages.add(self)
 
         async def on_message(self, message):
             try:
@@ -139,10 +166,10 @@ def application(gate, session_of_page, hosts):
                 self.close(NOT_UNDERSTOOD, str(error))
                 return
             if self.conversation is None:
-                if request["kind"] != "open" or not gate.admits(request.get("token")):
+                if request["kind"] != "open" or not site.gate.admits(request.get("token")):
                     self.close(REFUSED, "This address is of an earlier start; open the one printed last.")
                     return
-                self.conversation = Conversation(session_of_page(), self.send)
+                self.conversation = Conversation(site.session_of_page(), self.send)
             self.conversation.take(request)
             if self.sent is not None:
                 with contextlib.suppress(asyncio.CancelledError):  # the server ends
@@ -150,22 +177,23 @@ def application(gate, session_of_page, hosts):
 
         def send(self, header, buffers):
             if header["kind"] == "open":
-                header["token"] = gate.token
+                header["token"] = site.gate.token
             if "report" in header:
-                header["link"] = link(header["report"])
+                header["link"] = site.link(header["report"])
             with contextlib.suppress(WebSocketClosedError):
                 self.sent = self.write_message(framed(header, buffers), binary=True)
                 self.sent.add_done_callback(lambda sent: sent.cancelled() or sent.exception())  # the page has gone
 
         def on_close(self):
+            site.pages.discard(self)
             if self.conversation:
                 self.conversation.end()
 
-    return Application(
-        [("/socket", Socket), (".*", File)],
-        websocket_max_message_size=MAX_MESSAGE,
-        log_function=lambda handler: None,
-    )
+        def end(self):
+            """Close at once, what is not sent is lost."""
+            self.ws_connection.stream.close()
+
+    return Socket
 
 
 def style():
@@ -194,13 +222,15 @@ def listening(session_of_page, port=0):
         ) from None
     number = sockets[0].getsockname()[1]
     gate = Gate()
-    app = application(gate, session_of_page, {f"{ADDRESS}:{number}", f"localhost:{number}"})
-    server = HTTPServer(app, max_body_size=MAX_MESSAGE)
+    site = Site(gate, session_of_page, {f"{ADDRESS}:{number}", f"localhost:{number}"})
+    server = HTTPServer(application(site), max_body_size=MAX_MESSAGE)
     server.add_sockets(sockets)
     try:
         yield f"http://{ADDRESS}:{number}/", gate
     finally:
         server.stop()
+        for page in list(site.pages):
+            page.end()
 
 
 def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):

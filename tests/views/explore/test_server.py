@@ -344,6 +344,19 @@ def test_a_page_that_does_not_read_is_not_answered_on(monkeypatch):
     assert other["parameters"]
 
 
+def test_a_server_ends_quietly_while_answers_are_under_way(monkeypatch, caplog, capfd):
+    async def left(client):
+        page = await client.page()
+        for _ in range(30):
+            await page.send("look", state=STATE)
+        await page.answer()
+
+    monkeypatch.setitem(ANSWERS, "look", lambda session, request: {"text": "x" * 1_000_000})
+    served(left)
+    assert not caplog.records
+    assert "Traceback" not in "".join(capfd.readouterr())
+
+
 def test_a_report_is_shown_without_access_to_the_server(tmp_path, monkeypatch):
     def reported(session, request):
         (tmp_path / "made.html").write_text("<script>1</script>", encoding="utf-8")

@@ -206,14 +206,18 @@ def test_two_sessions_do_not_share_states():
     assert asked(other, state=PLAIN)["values"]["crank_length"] == 0.3
 
 
+LEAK = 200
+"""Bytes for each change that count as a leak; the smallest answer is a hundred times larger."""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("case", ["sawframe_2r63", "pumpjack"])
-def test_memory_stays_flat_over_10_000_changes(case):
+def test_memory_stays_flat(case):
     """Also where numbers become zero and so the structure of the machine another one."""
     session = Session(case)
     fields = [item for item in asked(session, "describe", state=state(session.first))["parameters"] if item["value"]]
-    rng = np.random.default_rng(1)
     zeroed = [item["path"] for item in fields if item["path"].endswith((".mass", ".inertia"))][:3]
+    rng = np.random.default_rng(1)
 
     def change(count):
         for _ in range(count):
@@ -221,17 +225,15 @@ def test_memory_stays_flat_over_10_000_changes(case):
             values = {item["path"]: item["value"] * (1 + 1e-3 * rng.random())}
             values |= {path: 0.0 for path in zeroed if rng.random() < 0.3}
             framed(*packed(asked(session, state=state(session.first, **values), show=["O"], count=12)))
+        return tracemalloc.get_traced_memory()[0]
 
-    change(1000)
+    change(300)
     tracemalloc.start()
     try:
-        change(1000)
-        before = tracemalloc.get_traced_memory()[0]
-        change(8000)
-        after = tracemalloc.get_traced_memory()[0]
+        before, count = change(200), 600
+        assert change(count) - before < LEAK * count
     finally:
         tracemalloc.stop()
-    assert after - before < 1e6
 
 
 def test_names_of_requests_are_listed_once():
