@@ -79,6 +79,9 @@ def test_number_beyond_the_slider_widens_it(page):
     slider = page.row("slider.mass")[0]
     assert float(slider.get_attribute("max")) > 5000
     assert float(slider.get_attribute("value")) == 5000
+    press(page, "z", held=[Keys.CONTROL])
+    page.settled()
+    assert [slider.get_attribute(name) for name in ("min", "max", "value")] == ["0", "1200", "600"]
 
 
 def test_a_movement_is_one_step_of_undo(page):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from kinetostatics.views.movement import drawing_of
-from kinetostatics.views.page import bundle, source, split_arrays
+from kinetostatics.views.page import bundle, packed, source
 from support.every import every
 from support.reports import plain
 
@@ -290,8 +290,8 @@ def test_ten_charts_are_redrawn_soon(page, chart, record_property):
 
 
 def machine(solution):
-    header, arrays = split_arrays(drawing_of(solution))
-    return json.dumps(header), [base64.b64encode(array.tobytes()).decode() for array in arrays]
+    header, buffers = packed(drawing_of(solution))
+    return json.dumps(header), [base64.b64encode(buffer).decode() for buffer in buffers]
 
 
 @pytest.fixture

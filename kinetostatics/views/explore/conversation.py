@@ -3,7 +3,7 @@
 import asyncio
 import contextlib
 
-from .messages import packed
+from ..page import packed
 from .session import OF_NEWEST
 
 PAUSE = 0.05

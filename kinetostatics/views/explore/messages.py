@@ -1,9 +1,6 @@
-"""Requests as JSON; answers as messages: JSON with places for arrays, and the bytes of the arrays behind it."""
+"""Requests as JSON; packed answers as messages: JSON with places for arrays, and the bytes of the arrays behind it."""
 
 import json
-import math
-
-import numpy as np
 
 from ...casefile.reading import is_deeper
 
@@ -11,7 +8,6 @@ LENGTH_BYTES = 4
 """Bytes in front of a message with the length of its JSON, little-endian."""
 ALIGNMENT = 8
 """The JSON ends and arrays begin at multiples of this, as typed arrays in browsers must."""
-KINDS = {np.dtype(np.float32): "f4", np.dtype(np.float64): "f8"}
 
 MAX_DEPTH = 20
 """Largest depth of nested objects and lists of a request."""
@@ -32,27 +28,6 @@ def parsed(message):
 
 def _refuse_constant(name):
     raise ValueError(f"{name} is no JSON")
-
-
-def packed(answer):
-    """An answer as header and buffers: an array becomes {"array": number, "kind": "f4" or "f8"}, NaN becomes None."""
-    buffers: list[bytes] = []
-
-    def plain(item):
-        if isinstance(item, dict):
-            return {str(key): plain(value) for key, value in item.items()}
-        if isinstance(item, list | tuple):
-            return [plain(value) for value in item]
-        if isinstance(item, np.ndarray):
-            if item.dtype not in KINDS:
-                item = item.astype(np.float64)
-            buffers.append(np.ascontiguousarray(item).astype(item.dtype.newbyteorder("<"), copy=False).tobytes())
-            return {"array": len(buffers) - 1, "kind": KINDS[item.dtype]}
-        if isinstance(item, np.generic):
-            item = item.item()
-        return None if isinstance(item, float) and not math.isfinite(item) else item
-
-    return plain(answer), buffers
 
 
 def framed(header, buffers):

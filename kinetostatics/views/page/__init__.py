@@ -3,6 +3,7 @@
 A script is an ES module. May import errors to numbers.
 """
 
+import math
 import re
 from importlib import resources
 
@@ -37,27 +38,29 @@ def bundle(entry, read=source):
     return "\n".join(texts.values())
 
 
-def split_arrays(value):
-    """A nested value of a message and its arrays, apart.
+KINDS = {np.dtype(np.float32): "f4", np.dtype(np.float64): "f8"}
+"""Kinds of arrays in messages, as `arrays.js` reads them."""
 
-    Arrays become {"array": k, "kind": "f4" | "f8"}: the number k in the list, and its kind.
 
-    Returns
-    -------
-    value : dict, list or scalar
-        For JSON.
-    arrays : list of ndarray
-        Contiguous, little-endian.
+def packed(answer):
+    """A nested answer as (header, buffers): JSON, and the bytes of its arrays, little-endian.
+
+    An array becomes {"array": its number, "kind": "f4" or "f8"}, a number that is not finite None.
     """
-    arrays: list[np.ndarray] = []
+    buffers: list[bytes] = []
 
-    def split(item):
-        if isinstance(item, np.ndarray):
-            kind = "f4" if item.dtype == np.float32 else "f8"
-            arrays.append(np.ascontiguousarray(item, dtype=f"<{kind}"))
-            return {"array": len(arrays) - 1, "kind": kind}
+    def plain(item):
         if isinstance(item, dict):
-            return {name: split(part) for name, part in item.items()}
-        return [split(part) for part in item] if isinstance(item, list | tuple) else item
+            return {str(key): plain(value) for key, value in item.items()}
+        if isinstance(item, list | tuple):
+            return [plain(value) for value in item]
+        if isinstance(item, np.ndarray):
+            if item.dtype not in KINDS:
+                item = item.astype(np.float64)
+            buffers.append(np.ascontiguousarray(item).astype(item.dtype.newbyteorder("<"), copy=False).tobytes())
+            return {"array": len(buffers) - 1, "kind": KINDS[item.dtype]}
+        if isinstance(item, np.generic):
+            item = item.item()
+        return None if isinstance(item, float) and not math.isfinite(item) else item
 
-    return split(value), arrays
+    return plain(answer), buffers

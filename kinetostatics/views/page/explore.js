@@ -10,8 +10,8 @@
 //   change(state, still)  show another state; `still` while a hand moves something: one step of undo for all of it
 //   drag(fields, still)   the same by a request "drag", whose answer has the new state
 //   focus(path), band(name, area)  bring a parameter into view; a tolerance band in a chart, or null
-//   onknown(f), onchanged(f), onshown(f), oncompared(f)  call f(answer or state): after each description, change, answer
-//             to a look, answer to a look of the reference
+//   onknown(f), onchanged(f), onshown(f), oncompared(f)  call f(answer or state): after each description, change,
+//             answer to a look, answer to a look of the reference
 import { Ask } from "./ask.js";
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
@@ -67,9 +67,9 @@ export class Explore {
 
   // Does all that is shown belong to the state that is asked for, and to its reference?
   get settled() {
-    const { answered, reference } = this, same = (answer, state) => Boolean(answer) && keyOf(answer.state) === keyOf(state);
-    return Boolean(this.known) && !this.moving && same(answered, this.state) && (!reference || same(reference, this.compared))
-      && !this.requests.busy;
+    if (!this.known || this.moving || this.requests.busy) return false;
+    const { answered, reference } = this, same = (answer, state) => keyOf(answer.state) === keyOf(state);
+    return Boolean(answered) && same(answered, this.state) && (!reference || same(reference, this.compared));
   }
 
   get compared() {
@@ -325,7 +325,8 @@ export class Explore {
     this.redo.disabled = this.history.last;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.address.write({
-      state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen), planes: JSON.stringify([...this.curves.planes]),
+      state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen),
+      planes: JSON.stringify([...this.curves.planes]),
       angle: String(this.clock.degrees), compared: JSON.stringify(this.frozen),
     }), REMEMBER);
   }

@@ -24,7 +24,7 @@ from ...numbers.formatting import pretty_unit
 from ...version import __version__
 from ..canvas import display_unit, grouped
 from ..movement import movements
-from ..page import bundle, source, split_arrays
+from ..page import bundle, packed, source
 from . import tables
 from .tables import readings
 
@@ -107,7 +107,7 @@ def _contents(subject, progress):
     drawn = _figures(subject, values, runs)
     boxes = [item["box"] for item in moving]
     data = {**turning, "drawings": moving, "quantities": values, "figures": drawn["items"]}
-    header, arrays = split_arrays(data | {"colours": COLOURS, "dashes": DASHES})
+    header, buffers = packed(data | {"colours": COLOURS, "dashes": DASHES})
     return {
         "subject": subject,
         "tables": contents,
@@ -128,7 +128,7 @@ def _contents(subject, progress):
         "made": {"version": __version__, "python": platform.python_version(), "numpy": np.__version__},
         "date": dt.date.today().isoformat(),
         "data": header,
-        "arrays": [base64.b64encode(array.tobytes()).decode("ascii") for array in arrays],
+        "arrays": [base64.b64encode(buffer).decode("ascii") for buffer in buffers],
         "style": Markup(source("style.css") + source("report.css")),
         "script": Markup(bundle("report.js")),
         "speeds": [

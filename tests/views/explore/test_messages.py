@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from kinetostatics.views.explore.messages import ALIGNMENT, MAX_DEPTH, framed, packed, parsed, unframed
+from kinetostatics.views.explore.messages import ALIGNMENT, MAX_DEPTH, framed, parsed, unframed
+from kinetostatics.views.page import packed
 from support.every import every
 
 

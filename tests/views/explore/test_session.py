@@ -9,8 +9,9 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.views.explore import session as module
-from kinetostatics.views.explore.messages import framed, packed
+from kinetostatics.views.explore.messages import framed
 from kinetostatics.views.explore.session import ANSWERS, MAX_ADDRESS, MAX_COUNT, MAX_SCENES, Session
+from kinetostatics.views.page import packed
 from support.every import every
 
 CASE = ks.load_case("sawframe_2r63")
