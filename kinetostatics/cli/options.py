@@ -61,7 +61,7 @@ def _count(text, size=None):
 
 
 def _port(text):
-    if not (text.isdecimal() and int(text[:9]) <= MAX_PORT):
+    if not (text.isascii() and text.isdecimal() and int(text[:9]) <= MAX_PORT):
         raise argparse.ArgumentTypeError(f"must be a whole number from 0 (a free port) to {MAX_PORT}, got {text!r}")
     return int(text)
 

@@ -103,7 +103,7 @@ def test_tables_are_written_to_files_beside_it(tmp_path):
         assert one.period == other.period
         np.testing.assert_allclose(other.balancing_torque, one.balancing_torque, rtol=1e-13, atol=1e-13)
     case_text.write_case(tmp_path / "made.toml", "Made again", scenes)
-    with pytest.raises(ks.errors.FileError, match="made_engine_load_1.csv: exists already"):
+    with pytest.raises(ks.errors.FileError, match=r"made_engine_load_1\.csv: exists already"):
         case_text.write_case(tmp_path / "made.toml", "Made", {"engine": scenes["diagram"]})
 
 

@@ -1,4 +1,4 @@
-"""Keep what is shown: a case file, Python text and a report, all of one state.
+"""A state of the explore page kept as a case file, Python text or a report.
 
 Files go into the folder of the session alone, by names without a path. An existing file is replaced only on request,
 whole or not at all; a file that the case itself was read from never is.

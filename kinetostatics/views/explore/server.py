@@ -91,7 +91,7 @@ def application(gate, session_of_page, hosts):
     reports: dict[str, Path] = {}
 
     def link(path):
-        """Address of a report that nobody can guess."""
+        """Address of a report, with random letters that others cannot guess."""
         address = f"/report/{secrets.token_urlsafe(TOKEN_BYTES)}"
         reports[address] = Path(path)
         return address
