@@ -140,9 +140,7 @@ def application(gate, session_of_page, hosts):
                 return
             if self.conversation is None:
                 if request["kind"] != "open" or not gate.admits(request.get("token")):
-                    self.close(
-                        REFUSED, "This address is of an earlier start; open the one printed last."
-                    )
+                    self.close(REFUSED, "This address is of an earlier start; open the one printed last.")
                     return
                 self.conversation = Conversation(session_of_page(), self.send)
             self.conversation.take(request)
