@@ -1,5 +1,6 @@
 """Session: requests checked, states with their scenes, the start by an address, answers that belong to their state."""
 
+import gc
 import json
 import tracemalloc
 import warnings
@@ -225,6 +226,7 @@ def test_memory_stays_flat(case):
             values = {item["path"]: item["value"] * (1 + 1e-3 * rng.random())}
             values |= {path: 0.0 for path in zeroed if rng.random() < 0.3}
             framed(*packed(asked(session, state=state(session.first, **values), show=["O"], count=12)))
+        gc.collect()  # solutions refer to each other in circles, and tests seldom look for garbage
         return tracemalloc.get_traced_memory()[0]
 
     change(300)
