@@ -190,7 +190,7 @@ def _socket_handler(site):
                 self.conversation.end()
 
         def end(self):
-            """Close at once, what is not sent is lost."""
+            """Close at once, unsent messages are lost."""
             self.ws_connection.stream.close()
 
     return Socket
