@@ -68,7 +68,18 @@ html_theme = "pydata_sphinx_theme"
 html_title = "kinetostatics"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
-alone = ("index", "start", "command_line", "casefile", "how_sure", "gallery", "glossary", "contributors", "search")
+alone = (
+    "index",
+    "start",
+    "command_line",
+    "casefile",
+    "explore",
+    "how_sure",
+    "gallery",
+    "glossary",
+    "contributors",
+    "search",
+)
 html_sidebars = {page: [] for page in alone}
 html_show_sourcelink = False
 html_theme_options = {

@@ -11,8 +11,8 @@ IMPORTED = re.compile(r"""(?:@import|url\()\s*["']?(?:https?:)?//[^)"']*""")
 PICTURE = re.compile(r"""<img[^>]*\ssrc=["']([^"':]+)["']""")
 MOST = 300_000
 """Bytes of pictures on a page."""
-LARGER = {"gallery.html": 700_000}
-"""The page of pictures takes more."""
+LARGER = {"gallery.html": 700_000, "explore.html": 1_500_000}
+"""The page of pictures takes more, and the film of the explore page."""
 
 
 def check(app, exception):

@@ -28,6 +28,7 @@ CELLS = {
     "show": "import kinetostatics as ks\nw = ks.explore('sawframe_2r63', variant='cam-circle')\nw",
     "print": "import json\nprint('shown:', json.dumps([w.scene.parameters['slider.mass'], w.state]))",
     "second": "v = ks.explore(w.scene)\nv",
+    "again": "w",
     "set": "w.state = {'variant': 'plain', 'values': {'crank_length': 0.25}}",
     "end": "import os\nos._exit(1)",
 }
@@ -164,6 +165,15 @@ def test_two_widgets_do_not_disturb_each_other(shown):
     assert notebook.curves(page) == before
     notebook.drag(page, "slider.mass", -25)
     assert notebook.curves(other) == others
+
+
+def test_two_pages_of_one_widget_show_one_machine(shown):
+    notebook, page = shown
+    notebook.run("again")
+    other = notebook.page("again")
+    curves = notebook.drag(page, "slider.mass", 25)
+    notebook.wait.until(lambda _: notebook.curves(other) == curves)
+    assert notebook.number(other, "slider.mass") == notebook.number(page, "slider.mass") != 600.0
 
 
 def test_a_state_set_in_a_cell_is_shown(shown):

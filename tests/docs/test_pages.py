@@ -16,7 +16,11 @@ from support.pages import DOCS, RUN_AT_BUILD, code_cells, links, pages, script, 
 PAGES = pages()
 LINES = 15
 """Of code, from a drawing to its forces."""
-RUN_BY_TESTS = {"gallery": "tests/docs/test_gallery.py", "api/loads": "tests/machine/loads/test_kinked.py"}
+RUN_BY_TESTS = {
+    "gallery": "tests/docs/test_gallery.py",
+    "api/loads": "tests/machine/loads/test_kinked.py",
+    "explore": "tests/docs/test_explore_page.py",
+}
 """Pages that show code as the repository's own page does, and the test that runs it."""
 
 

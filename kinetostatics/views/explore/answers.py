@@ -174,7 +174,7 @@ def sensitivities(scene, text) -> Sensitivities:
     NotGivenError
         A load or cam of the user's own does more than recorded arithmetic.
     DesignError
-        The output has no value.
+        The output has no finite value; or its quantity grows without bound, or has no correct digit somewhere.
     KinetostaticsError
         As of `Scene.solve`.
 
@@ -185,16 +185,18 @@ def sensitivities(scene, text) -> Sensitivities:
     >>> scene = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
     >>> found = sensitivities(scene, "largest_absolute balancing_torque")
     >>> [(row.path, round(row.share, 3)) for row in found.rows[:4]]
-    [('crank_speed', 2.0), ('crank_length', 2.164), ('slider.mass', 1.0), ('coupler_length', -0.164)]
+    [('crank_length', 2.147), ('crank_speed', 2.0), ('slider.mass', 1.0), ('coupler_length', -0.147)]
     """
     output: Any = parse_output(text, scene)
+    solution = scene.solve(COUNT)
+    if text := warning(solution, [extrema(solution, output.quantity)]):
+        raise DesignError(f"{output} has no derivatives. {text}")
     fixed = paths_without_derivative(scene.places, scene.mechanism)
     own = {path: value for path, value in scene.parameters.items() if isinstance(value, float) and path not in fixed}
     bounds = {path: (value - abs(value) - 1.0, value + abs(value) + 1.0) for path, value in own.items()}
     problem = Problem(scene, bounds, (output.quantity,), angles=ANGLES)
     value, slopes = problem.output(output, problem.start)
     if not np.isfinite(value):
-        scene.solve(ANGLES)
         raise DesignError(f"{output} has no finite value")
     rows = [
         Sensitivity(path, float(slope), float(slope * own[path] / value) if own[path] and value else np.nan)

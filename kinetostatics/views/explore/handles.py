@@ -18,7 +18,6 @@ from ...machine.group import CRANK
 from ...machine.guide import Guide
 from ...machine.loads.load import Load
 from ...numbers import checks
-from ...numbers.paths import Place
 from ..strokes import Shape, left
 
 STEPS_OVER_SIZE = 200.0
@@ -27,9 +26,10 @@ ANGLE_STEP, DEGREE = 1.0, math.pi / 180.0
 """Snapping step of angles, degrees; and a degree in rad."""
 FINE = 100.0
 """Snapping step over the rounding step without snapping."""
-ARM, OVERHANG = 0.15, 0.07
-"""Distance of a point that turns a line without a slot from its vertex, and of points of a guide from the travel of its
-slider, over the largest extent of the joints."""
+ARM = 0.15
+"""Distance from the vertex of a point that turns a line without a slot, over the largest extent of the joints."""
+OVERHANG = 0.07
+"""Distance of the points of a guide from the travel of its slider, over that extent."""
 CLOSE = 0.025
 """Distance of two points in all poses, over that extent, below which they are shown side by side."""
 POSES_COMPARED = 12
@@ -146,7 +146,7 @@ def dragged(solution, name, x, y, index, snap=True, step=None):
         step = snap_step(points.size) if step is None else step
         new = [_rounded(*values, share * step) for values in zip(old, new, strict=True)]
     elif unit == "rad":
-        new = [_rounded(*old, *new, share * ANGLE_STEP, DEGREE)]
+        new = [_rounded(old[0], new[0], share * ANGLE_STEP, DEGREE)]
     else:  # a direction
         before = math.atan2(*old[::-1])
         turned = _rounded(before, _near(math.atan2(*new[::-1]), before), share * ANGLE_STEP, DEGREE)
@@ -204,7 +204,7 @@ class _Points:
         """Handles: joints, other points, guides and angles, mass centres; with a name that one alone."""
         groups: dict[Any, list[Any]] = {}
         for path, steps, dimension in self.declared():
-            groups.setdefault(_target(steps, dimension), []).append((path, steps, dimension))
+            groups.setdefault(_target(steps, dimension), []).append((path, dimension))
         wanted = (group for group in groups.values() if name in (None, group[0][0]))
         found = [self.handle(*zip(*group, strict=True)) for group in wanted]
         found.sort(key=lambda handle: KINDS.index(handle.kind))
@@ -220,16 +220,16 @@ class _Points:
     def declared(self):
         """Path, steps and dimension of each number that a part or load declares."""
         made, loads = self.mechanism, enumerate(self.solution.loads)
-        tables = {("mechanism", "crank"): made.crank.dimensions}
+        tables: dict[tuple[str | int, ...], Any] = {("mechanism", "crank"): made.crank.dimensions}
         tables |= {("mechanism", "groups", row): group.dimensions for row, group in enumerate(made.groups)}
         tables |= {("loads", row): load.dimensions(made) for row, load in loads if isinstance(load, Load)}
         known = {(*steps, *inner): item for steps, table in tables.items() for inner, item in table.items()}
         places = self.places.items()
         return [(path, place.steps, known[place.steps]) for path, place in places if place.steps in known]
 
-    def handle(self, paths, steps, dimensions):
+    def handle(self, paths, dimensions):
         """The handle of numbers that determine one point."""
-        first, owners = dimensions[0], self.owners(steps[0])
+        first, owners = dimensions[0], self.owners(self.places[paths[0]])
         if guide := next((owner for owner in owners if isinstance(owner, Guide)), None):
             slider = next(name for owner in owners for name, other in getattr(owner, "guides", {}).items())
             turns = isinstance(first, Angle)
@@ -246,9 +246,10 @@ class _Points:
             return self.place_on_link(paths, dimensions, _words(paths[0].rpartition(".")[0]), "point")
         return self.slot(paths, first, owners[0])
 
-    def owners(self, steps):
-        """Parts that own the number at some steps, the inner ones first."""
-        return [Place(steps[:depth], None).value(self.solution) for depth in range(len(steps) - 1, 2, -1)]
+    def owners(self, place):
+        """Parts that own the number at a place, the inner ones first."""
+        depths = range(len(place.steps) - 1, 2, -1)
+        return [place._replace(steps=place.steps[:depth]).value(self.solution) for depth in depths]
 
     def at(self, point):
         """Position of a joint, a place on a link or a fixed point, (2, N)."""

@@ -191,7 +191,7 @@ def _socket_handler(site):
                 self.conversation.end()
 
         def end(self):
-            """Close at once, what is not sent is lost."""
+            """Close at once; unsent messages are lost."""
             connection: Any = self.ws_connection  # None once it was told to close
             if connection is not None:
                 connection.stream.close()

@@ -259,7 +259,7 @@ def drag(session, request):
     """
     state, place = request["state"], [request.get(key) for key in ("x", "y", "index", "step")]
     if not all(map(is_number, place)) or not place[3] > 0:
-        raise ParameterError(f"explore: x, y, index and step must be numbers, got {checks.shown(place)}")
+        raise ParameterError(f"explore: x, y, index and step (above 0) must be numbers, got {checks.shown(place)}")
     x, y, index, step = place
     solution = session.scene(state).solve(count_of(request), on_gap="nan")
     at = float(x), float(y), int(index) % solution.crank_angle.size

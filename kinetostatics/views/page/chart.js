@@ -4,7 +4,7 @@
 import { element, put, short } from "./svg.js";
 
 const LEFT = 58, RIGHT = 16, TOP = 26, BOTTOM = 38;
-const CLOSEST_TICKS = [45, 30]; // pixels, along x and y
+const CLOSEST_TICKS = [45, 24]; // pixels, along x and y
 const AIR = 0.06; // of the range, beyond the curves
 const USED = 0.6; // share of the range below which it shrinks
 const TURN_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360];

@@ -29,7 +29,8 @@ class Figure {
     this.before = made(caption, "span", { class: "values before" });
     this.turns = button(caption, plane ? "over the angle" : "hodograph", onplane, { class: "plain" });
     this.remove = button(caption, "×", onremove, { class: "plain remove" });
-    this.chart = new Chart(made(this.element, "div", { class: "place" }), { plane, height: plane ? PLANE_HEIGHT : HEIGHT });
+    const place = made(this.element, "div", { class: "place" });
+    this.chart = new Chart(place, { plane, height: plane ? PLANE_HEIGHT : HEIGHT });
     this.words = made(this.element, "p", { class: "words" });
     this.chart.onchoose = onchoose;
   }
@@ -116,7 +117,8 @@ export class Curves {
     const quantities = drive ? [...known, { name: RUNNING, label: RUNNING }] : known;
     const { choice } = this, panel = document.createElement("div");
     panel.className = "panel";
-    const search = made(panel, "input", { type: "search", placeholder: "search quantities", "aria-label": "search quantities" });
+    const words = "search quantities";
+    const search = made(panel, "input", { type: "search", placeholder: words, "aria-label": words });
     const list = made(panel, "div", { class: "list" });
     this.boxes = new Map(quantities.map(({ name, label }) => {
       const input = checkbox(list, label, this.chosen.includes(name), (wanted) => this.choose(name, wanted));

@@ -10,8 +10,8 @@
 //   change(state, still)  show another state; `still` while a hand moves something: one step of undo for all of it
 //   drag(fields, still)   the same by a request "drag", whose answer has the new state
 //   focus(path), band(name, area)  bring a parameter into view; a tolerance band in a chart, or null
-//   onknown(f), onchanged(f), onshown(f), oncompared(f)  call f(answer or state): after each description, change, answer
-//             to a look, answer to a look of the reference
+//   onknown(f), onchanged(f), onshown(f), oncompared(f)  call f(answer or state): after each description, change,
+//             answer to a look, answer to a look of the reference
 import { Ask } from "./ask.js";
 import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
@@ -67,9 +67,9 @@ export class Explore {
 
   // Does all that is shown belong to the state that is asked for, and to its reference?
   get settled() {
-    const { answered, reference } = this, same = (answer, state) => Boolean(answer) && keyOf(answer.state) === keyOf(state);
-    return Boolean(this.known) && !this.moving && same(answered, this.state) && (!reference || same(reference, this.compared))
-      && !this.requests.busy;
+    if (!this.known || this.moving || this.requests.busy) return false;
+    const { answered, reference } = this, same = (answer, state) => keyOf(answer.state) === keyOf(state);
+    return Boolean(answered) && same(answered, this.state) && (!reference || same(reference, this.compared));
   }
 
   get compared() {
@@ -133,7 +133,7 @@ export class Explore {
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
     this.history = new History(answer.start);
-    this.curves.chosen = answer.show ?? [];
+    this.curves.chosen = answer.show; // null: the first curves of the machine
     if (Array.isArray(planes)) this.curves.planes = new Set(planes);
     this.present();
   }
@@ -164,12 +164,12 @@ export class Explore {
   }
 
   change(state, still = false) {
-    this.keep(state, still);
+    this.record(state, still);
     this.present();
   }
 
   // A movement begins with the first state that differs: it must not replace the state before it.
-  keep(state, still) {
+  record(state, still) {
     const kept = this.history.keep(state, this.moving);
     this.moving = still && (kept || this.moving);
   }
@@ -262,7 +262,7 @@ export class Explore {
 
   receive(answer, asked) {
     if (answer.kind === "drag" && answer.state) {
-      this.keep(answer.state, asked.still);
+      this.record(answer.state, asked.still);
       this.kept.set(answer.state.variant, answer.state);
       this.remember();
       this.tell("changed", answer.state);
@@ -325,7 +325,8 @@ export class Explore {
     this.redo.disabled = this.history.last;
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.address.write({
-      state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen), planes: JSON.stringify([...this.curves.planes]),
+      state: JSON.stringify(this.state), show: JSON.stringify(this.curves.chosen),
+      planes: JSON.stringify([...this.curves.planes]),
       angle: String(this.clock.degrees), compared: JSON.stringify(this.frozen),
     }), REMEMBER);
   }

@@ -22,14 +22,16 @@ function fits(data, frame) {
   const share = (mine, other) => (mine === other ? 1 : mine / other);
   const arrow = share(data.longest * frame.scale, data.scale * frame.longest);
   const torque = share(data.largest_torque, frame.largest_torque);
-  return inside && spans(data.box) >= SMALLEST * whole && [arrow, torque].every((size) => size >= SMALLEST && size <= LARGEST);
+  const forces = [arrow, torque].every((size) => size >= SMALLEST && size <= LARGEST);
+  return inside && forces && spans(data.box) >= SMALLEST * whole;
 }
 
 export class Mechanism {
   // `onturn(index)` is called when another crank angle is chosen.
   constructor(parent, onturn) {
     Object.assign(this, { parent, shown: null, reference: null, frame: null, hidden: new Set(), arrows: "" });
-    this.svg = element("svg", made(parent, "div", { class: "stage" }), { tabindex: 0, role: "group", "aria-label": "drawing" });
+    const stage = made(parent, "div", { class: "stage" });
+    this.svg = element("svg", stage, { tabindex: 0, role: "group", "aria-label": "drawing" });
     this.drawing = new Drawing(this.svg, { tallest: this.tallest() });
     this.controls();
     const options = made(parent, "div", { class: "options" });
@@ -61,7 +63,7 @@ export class Mechanism {
     made(bar, "button", { type: "button", class: "play", "aria-label": "play" }, "▶");
     made(bar, "input", { type: "range", class: "angle", min: 0, "aria-label": "crank angle" });
     const label = made(bar, "label", { class: "at" });
-    made(label, "input", { type: "number", class: "degrees", min: 0, value: 0, "aria-label": "crank angle in degrees" });
+    made(label, "input", { type: "number", class: "degrees", min: 0, value: 0, "aria-label": "crank angle, degrees" });
     label.append(" °");
     const pace = made(bar, "select", { class: "pace", "aria-label": "time of a turn" });
     for (const [text, seconds] of Object.entries(PACES)) made(pace, "option", { value: seconds }, `${text} a turn`);
@@ -158,7 +160,8 @@ export class Mechanism {
   // The crank angle nearest to the chosen one at which a pin of the crank lies in the direction of a point.
   turnTo(pin, [x, y]) {
     const { joints, centre } = this.shown.drawing, { count, step, index } = this.clock, pivot = joints[centre];
-    const wanted = Math.atan2(y - pivot[1], x - pivot[0]), turned = (wanted - this.direction(pin, index)) * 180 / Math.PI;
+    const wanted = Math.atan2(y - pivot[1], x - pivot[0]);
+    const turned = (wanted - this.direction(pin, index)) * 180 / Math.PI;
     const least = ((turned + 540) % 360) - 180;
     if (Number.isFinite(least)) this.clock.choose((index + Math.round(least / step) + count) % count);
   }

@@ -16,10 +16,9 @@ class Row {
     this.number = made(this.element, "input", { type: "number", step: "any", "aria-label": `${name} in ${unit}` });
     made(this.element, "span", { class: "unit" }, unit === "1" ? "" : unit);
     this.back = button(this.element, "↺", () => onchange(path, null, false), { class: "plain back" });
-    const first = `${this.text(field.value)} ${unit}`;
-    for (const [key, text] of Object.entries({ title: `back to ${first}`, "aria-label": `${name}: back to ${first}` })) {
-      this.back.setAttribute(key, text);
-    }
+    const words = `back to ${this.text(field.value)} ${unit}`;
+    this.back.title = words;
+    this.back.setAttribute("aria-label", `${name}: ${words}`);
     const set = (text, still) => {
       if (text === this.text(field.value)) onchange(path, null, still);
       else if (text !== "" && Number.isFinite(Number(text))) onchange(path, Number(text) / factor, still);
@@ -39,7 +38,7 @@ class Row {
 
   reset() {
     this.typing = false;
-    this.show(this.value);
+    this.show(this.value, true);
   }
 
   text(value) { return String(Number((value * this.field.factor).toPrecision(DIGITS))); }
@@ -50,12 +49,18 @@ class Row {
   get changed() { return this.value !== this.field.value; }
 
   // Its number, SI; what is under the hand stays.
-  show(value) {
+  show(value, anew = false) {
+    if (value === this.value && !anew) return;
     const { slider, number, field, element } = this, text = this.text(value);
     this.value = value;
-    if (Number(text) > Number(slider.max)) slider.max = this.text(Math.ceil(WIDER * value / field.step) * field.step);
-    if (Number(text) < Number(slider.min)) slider.min = this.text(Math.floor(WIDER * value / field.step) * field.step);
-    if (!this.moving) slider.value = text;
+    if (!this.moving) {
+      const { low, high, step } = field, wide = WIDER * value / step;
+      Object.assign(slider, {
+        min: this.text(value < low ? Math.floor(wide) * step : low),
+        max: this.text(value > high ? Math.ceil(wide) * step : high),
+        value: text,
+      });
+    }
     if (!this.typing && number.value !== text) number.value = text;
     slider.setAttribute("aria-valuetext", `${text} ${field.unit}`);
     element.classList.toggle("changed", this.changed);

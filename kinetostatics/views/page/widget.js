@@ -45,6 +45,7 @@ function render({ model, el }) {
   model.on("change:state", follow);
   return () => {
     model.off("change:state", follow);
+    explore.clock.run(false);
     kernel.close();
   };
 }

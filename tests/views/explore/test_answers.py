@@ -117,6 +117,14 @@ def test_sensitivities_that_do_not_exist_are_refused(values, text, words):
         answers.sensitivities(RUBBED.varied(values), text)
 
 
+@pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
+def test_sensitivities_where_digits_are_lost_are_refused():
+    """With equal bars the slider passes O: its length decides how the machine goes on there."""
+    equal = ks.Scene(ks.crank_slider(0.1, 0.1, slider=ks.Link(1.0)), 10.0)
+    with pytest.raises(ks.DesignError, match=r"no derivatives.*90, 270 deg"):
+        answers.sensitivities(equal, "mean_absolute balancing_torque")
+
+
 def test_bands_are_two_standard_uncertainties_wide():
     solution, inputs = RUBBED.solve(24), {"slider.mass": 0.01, "crank_length": 1e-5}
     torque, force = answers.bands(solution, ["balancing_torque", "O"], inputs)

@@ -67,6 +67,15 @@ def test_numbers_come_in_the_units_of_the_widget():
     assert answer["quantities"]["O"]["unit"] == "lbf"
 
 
+def test_cases_are_saved_in_the_folder_of_the_widget(tmp_path):
+    shown = ks.explore(CASE, variant="plain", folder=tmp_path)
+    state = {"variant": "plain", "values": {"slider.mass": 620}}
+    [(answer, _)] = asked(shown, "one", {"id": 1, "kind": "save", "state": state, "name": "heavy"})
+    assert answer["saved"] == "heavy.toml"
+    saved = ks.load_case(tmp_path / "heavy.toml")
+    assert [item.scene.parameters["slider.mass"] for item in saved.variants.values()] == [600.0, 620.0]
+
+
 def test_parts_come_while_other_requests_are_answered():
     async def ask():
         shown, found = ks.explore(CASE), []
