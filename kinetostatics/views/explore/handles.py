@@ -90,8 +90,7 @@ def handles(solution):
     >>> [handle.label for handle in handles(saw.solve(8))]
     ['crank length', 'coupler length', 'guide angle', 'guide offset', 'mass centre of the slider']
     """
-    points = _Points(solution)
-    return _in_rows(points.all(), points.crank_pins(), CLOSE * points.size)
+    return _Points(solution).side_by_side()
 
 
 def handle_data(solution, places=None):
@@ -110,7 +109,7 @@ def handle_data(solution, places=None):
                 "position": handle.position.T.astype(np.float32),
                 "row": handle.row,
             }
-            for handle in _in_rows(points.all(), points.crank_pins(), CLOSE * points.size)
+            for handle in points.side_by_side()
         ],
         "snap": snap_step(points.size),
     }
@@ -210,6 +209,10 @@ class _Points:
         found.sort(key=lambda handle: KINDS.index(handle.kind))
         centres = {f"{link}.centre.along": link for link, body in self.mechanism.links.items() if body.mass != 0}
         return found + [self.mass_centre(link) for path, link in centres.items() if name in (None, path)]
+
+    def side_by_side(self):
+        """All handles, with the rows of those that coincide."""
+        return _in_rows(self.all(), self.crank_pins(), CLOSE * self.size)
 
     def crank_pins(self):
         """Positions of the joints that turn with the crank; they stay free, because they turn it in the drawing."""
