@@ -235,12 +235,16 @@ def drawn_limit(arrays, most=None):
 
 def display_unit(name, arrays):
     """Factor and unit for readable numbers: the unit that the user chooses, else one by the size of the values."""
+    return unit_for(name, ordinary_size(list(arrays)))
+
+
+def unit_for(name, largest):
+    """Factor and unit for readable numbers of a known `ordinary_size`."""
     factor, chosen = shown_units().of(name)
     if dimension_name(name) in shown_units().chosen:
         return factor, chosen
     if name == "rad":
         return 180 / np.pi, "deg"
-    largest = ordinary_size(list(arrays))
     if name == "Pa" and largest >= 1e5:
         return 1e-6, "MPa"
     return (1e-3, f"k{name}") if name in ("N", "N m", "W", "J") and largest >= 1e4 else (1.0, name)

@@ -240,7 +240,7 @@ class SliderGroup(checks.Checked, Branch, Group):
         low, high = np.min(self.coupler_length), np.max(self.coupler_length)
         span = f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
         return (
-            f"the distance from {self.on} to the guide, up to {distance.max():.6g} m here, must not exceed the "
+            f"the distance from {self.on} to the guide, up to {np.max(distance):.6g} m here, must not exceed the "
             f"{self.called('coupler')} length, {span} m"
         )
 

@@ -14,6 +14,8 @@ STEPS_OF_A_SLIDER = 400
 """Least number of steps of a slider between its ends."""
 SHORTEST = 0.2
 """Lower end of the slider of a link's length, over its value: no link has length 0."""
+TINY = 1e-200
+"""Size of a number below which its slider is that of zero."""
 UNKNOWN_REACH = 1.0
 """End of the slider of a number 0, SI, if the machine has no number of its unit."""
 DRIVE = ("crank_speed", "crank_acceleration")
@@ -89,9 +91,9 @@ def ends(path, value, values, units):
     unit, dimension = units[path], dimension_name(units[path])
     if dimension == "angle":
         return min(-math.pi, value), max(math.pi, value)
-    if value and COORDINATES.fullmatch(path):
+    if abs(value) > TINY and COORDINATES.fullmatch(path):
         return -2.0 * abs(value), 2.0 * abs(value)
-    if value:
+    if abs(value) > TINY:
         low = SHORTEST * value if "_length" in path else 0.0
         return (low, 2.0 * value) if value > 0 else (2.0 * value, 0.0)
 

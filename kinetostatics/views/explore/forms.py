@@ -196,7 +196,9 @@ SHOWN_UNITS = {"m": "mm", "rad": "deg", "rad/s": "rpm"}
 
 
 def number_text(value, unit):
-    """Text of a number in SI that is read as exactly this number."""
+    """Text of a number in SI that is read as exactly this number; one without unit stays a number."""
+    if unit == "1":
+        return float(value)
     if unit in SHOWN_UNITS:
         shown = SHOWN_UNITS[unit]
         text = f"{value / to_si(f'1 {shown}', unit):.12g} {shown}"

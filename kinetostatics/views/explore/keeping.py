@@ -17,6 +17,8 @@ from ..report.report import report as write_report
 
 NAME = re.compile(r"\w[\w -]{0,79}")
 """Name of a file without its ending: no separators of folders, and no dots."""
+MAX_NAME = 200
+"""Longest name of a file without its ending, bytes; file systems take 255 with it."""
 
 
 def first_name(session):
@@ -31,7 +33,7 @@ def path_of(session, request, ending):
         raise ParameterError("explore: no folder to write into was given; start with a folder")
     name = request.get("name")
     plain = normalise(name).strip().removesuffix(ending) if isinstance(name, str) else ""
-    if not NAME.fullmatch(plain):
+    if not NAME.fullmatch(plain) or len(plain.encode()) > MAX_NAME:
         raise ParameterError(
             f"explore: the name of a file has letters, digits, blanks, - and _, 80 at most, got {checks.shown(name)}"
         )
@@ -93,7 +95,7 @@ def report(session, request):
     scenes = scenes_of(session, request["state"])
     if request.get("reference") is not None:
         name, scene = list(scenes.items())[-1]
-        scenes = {"before": session.scene(request["reference"]), name: scene}
+        scenes = {"reference" if name == "before" else "before": session.scene(request["reference"]), name: scene}
     from ...sweeps.workers import Workers
 
     with Workers(count=1) as workers:

@@ -15,7 +15,7 @@ COUNT = 360
 
 def motor_of(session, state):
     """Motor of a variant and its flywheel, kg m2; None and 0.0 without a drive."""
-    variant = session.case.variants[state["variant"]] if session.case else None
+    variant = session.case.variants[state.get("variant", session.first)] if session.case else None
     return (None, 0.0) if variant is None or variant.motor is None else (variant.motor, variant.flywheel)
 
 
@@ -30,7 +30,7 @@ def motor_speed(session, state):
     """Speed of the motor in steady running, a curve as those of `look`, with its crank angles and period, degrees."""
     motor, flywheel = motor_of(session, state)
     if motor is None:
-        raise ParameterError(f"explore: variant {state['variant']!r} has no drive")
+        raise ParameterError(f"explore: variant {state.get('variant', session.first)!r} has no drive")
     run = steady(session.scene(state), motor, flywheel, angles=COUNT)
     values = np.array(run.motor_speed)
     factor, unit = shown_unit("rad/s")

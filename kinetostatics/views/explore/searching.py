@@ -119,7 +119,12 @@ class Search:
 def answers(session, request):
     """Messages of the search of a request, one a step; None while there is none. Closing it ends the process."""
     reference = request.get("reference")
-    checks.require("explore", checks.choice("goal", request["goal"], GOALS))
+    wrong = {path: ends for path, ends in request["vary"].items() if not isinstance(ends, list) or len(ends) != 2}
+    checks.require(
+        "explore",
+        checks.choice("goal", request["goal"], GOALS),
+        *(f"{path} must vary between [low, high], got {checks.shown(ends)}" for path, ends in wrong.items()),
+    )
     task = SearchTask(
         session.scene(request["state"]),
         {path: tuple(ends) for path, ends in request["vary"].items()},

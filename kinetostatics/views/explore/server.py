@@ -7,6 +7,7 @@ arguments of its process.
 
 import asyncio
 import contextlib
+import gc
 import hmac
 import secrets
 import signal
@@ -25,6 +26,8 @@ from .conversation import Conversation
 from .messages import framed, parsed
 from .session import Session
 
+COLLECTION_THRESHOLDS = 700, 10, 10
+"""For garbage collection: a server makes machines as long as it runs, and solutions refer to each other in circles."""
 ADDRESS = "127.0.0.1"
 """The only address at which the server listens."""
 MAX_MESSAGE = 1_000_000
@@ -158,6 +161,7 @@ def _socket_handler(site):
             return True
 
         def open(self):
+            self.set_nodelay(True)
             site.pages.add(self)
 
         async def on_message(self, message):
@@ -251,6 +255,7 @@ def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
         Called with the address of the page.
     """
     require_tornado()
+    gc.set_threshold(*COLLECTION_THRESHOLDS)
     what = what if isinstance(what, Case | Scene | dict) else load_case(what)
     Session(what, variant, folder)  # a wrong variant ends the command before it serves
     handler, terminated = signal.getsignal(signal.SIGTERM), asyncio.Event()

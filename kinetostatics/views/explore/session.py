@@ -21,7 +21,7 @@ from ...mechanics.quantities import largest_term_in, of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
-from ..canvas import display_unit, drawn_limit, ordinary_size
+from ..canvas import drawn_limit, ordinary_size, unit_for
 from ..movement import drawing_of
 from ..report.tables import KINDS, decimals
 from . import answers, fields, groups, keeping, running, searching
@@ -71,15 +71,15 @@ class Session:
         """State saved last, the path of its file, and the name of its variant there."""
         self._reference: tuple[Any, Any] = None, None
         self._scenes: OrderedDict[str, Scene] = OrderedDict()
+        self.looked: tuple[Any, Any] = None, None
+        """Scene and solution of the last look."""
 
     def answer(self, request):
         """The answer to a request, a dict, or a generator of several; a sentence `problem` on what a user can mend."""
         request = {"state": None} | request
         try:
             checks.require("explore", checks.choice("kind of request", request.get("kind"), tuple(ANSWERS)))
-            for key in ("state", "reference"):
-                if request.get(key) is not None:
-                    require_state(key, request[key])
+            require_fields(request)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always")
                 found = ANSWERS[request["kind"]](self, request)
@@ -120,6 +120,12 @@ class Session:
                 self._scenes.popitem(last=False)
         self._scenes.move_to_end(key)
         return self._scenes[key]
+
+    def shown(self, state, count):
+        """Solution of a state at even crank angles, gaps allowed: the one of the last look, if it is that."""
+        scene = self.scene(state)
+        same = self.looked[0] is scene and self.looked[1].crank_angle.size == count
+        return self.looked[1] if same else scene.solve(count, on_gap="nan")
 
     def reference(self, state):
         """The `Reference` of a state, kept until another one is asked for."""
@@ -213,6 +219,24 @@ def require_names(names):
         raise ParameterError(f"explore: show must be a list of at most {MAX_SHOWN} names, got {checks.shown(names)}")
 
 
+def require_fields(request):
+    """Raise `ParameterError` unless the fields that several kinds of requests have are of their types."""
+    for key in ("state", "reference"):
+        if request.get(key) is not None:
+            require_state(key, request[key])
+    require_names(request.get("show", []))
+    count_of(request)
+    kinds = {"vary": (dict, "an object"), "limits": (list, "a list"), "action": (dict, "an object")}
+    kinds |= dict.fromkeys(("goal", "output"), (str, "a text"))
+    wrong = [
+        f"{key} must be {words}, got {checks.shown(request[key])}"
+        for key, (kind, words) in kinds.items()
+        if key in request and not isinstance(request[key], kind)
+    ]
+    missing = [key for key in NEEDED.get(request["kind"], ()) if request.get(key) is None]
+    checks.require("explore", *wrong, f"a request {request['kind']} needs {', '.join(missing)}" if missing else None)
+
+
 def describe(session, request):
     """Fields of the parameters and names of the quantities of a state."""
     scene = session.scene(request["state"])
@@ -221,7 +245,7 @@ def describe(session, request):
         for name, item in of_scene(scene).items()
         if item.kind in KINDS
     ]
-    drive = running.motor_of(session, {"variant": session.first} | request["state"])[0] is not None
+    drive = running.motor_of(session, request["state"])[0] is not None
     return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
 
 
@@ -239,6 +263,7 @@ def look(session, request):
     show = request.get("show", [])
     require_names(show)
     solution = scene.solve(count_of(request))
+    session.looked = scene, solution
     known = of_scene(scene)
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
@@ -261,7 +286,7 @@ def drag(session, request):
     if not all(map(is_number, place)) or not place[3] > 0:
         raise ParameterError(f"explore: x, y, index and step (above 0) must be numbers, got {checks.shown(place)}")
     x, y, index, step = place
-    solution = session.scene(state).solve(count_of(request), on_gap="nan")
+    solution = session.shown(state, count_of(request))
     at = float(x), float(y), int(index) % solution.crank_angle.size
     moved = dragged(solution, request.get("handle"), *at, request.get("snap") is not False, step)
     own = session.base(state).parameters
@@ -282,7 +307,7 @@ def curve(solution, known):
     values = zeroed(values, rounding)
     size = np.hypot(*values) if known.vector else values
     most = ordinary_size([size])
-    factor, unit = display_unit(known.unit, [most])
+    factor, unit = unit_for(known.unit, most)
     limit = drawn_limit([size], most)
     return {
         "label": known.label,
@@ -313,5 +338,7 @@ ANSWERS = {
     "report": keeping.report,
 }
 """Function of a session and a request, by the kind of request: it returns a dict, or yields dicts as parts."""
+NEEDED = {"optimise": ("vary", "goal", "output"), "sensitivities": ("output",), "edit": ("action",)}
+"""Fields without which a kind of request means nothing."""
 OF_NEWEST: tuple[str, ...] = ("ask", "running", "sensitivities", "tolerances")
 """Kinds of requests whose answers are dropped when a newer state is asked for."""

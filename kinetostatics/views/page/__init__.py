@@ -45,19 +45,20 @@ KINDS = {np.dtype(np.float32): "f4", np.dtype(np.float64): "f8"}
 def packed(answer):
     """An answer as header and buffers: an array becomes {"array": number, "kind": "f4" or "f8"}, NaN becomes None."""
     buffers: list[bytes] = []
+    return _plain(answer, buffers), buffers
 
-    def plain(item):
-        if isinstance(item, dict):
-            return {str(key): plain(value) for key, value in item.items()}
-        if isinstance(item, list | tuple):
-            return [plain(value) for value in item]
-        if isinstance(item, np.ndarray):
-            if item.dtype not in KINDS:
-                item = item.astype(np.float64)
-            buffers.append(np.ascontiguousarray(item).astype(item.dtype.newbyteorder("<"), copy=False).tobytes())
-            return {"array": len(buffers) - 1, "kind": KINDS[item.dtype]}
-        if isinstance(item, np.generic):
-            item = item.item()
-        return None if isinstance(item, float) and not math.isfinite(item) else item
 
-    return plain(answer), buffers
+def _plain(item, buffers):
+    """An item as JSON, its arrays appended to the buffers."""
+    if isinstance(item, dict):
+        return {str(key): _plain(value, buffers) for key, value in item.items()}
+    if isinstance(item, list | tuple):
+        return [_plain(value, buffers) for value in item]
+    if isinstance(item, np.ndarray):
+        if item.dtype not in KINDS:
+            item = item.astype(np.float64)
+        buffers.append(np.ascontiguousarray(item).astype(item.dtype.newbyteorder("<"), copy=False).tobytes())
+        return {"array": len(buffers) - 1, "kind": KINDS[item.dtype]}
+    if isinstance(item, np.generic):
+        item = item.item()
+    return None if isinstance(item, float) and not math.isfinite(item) else item

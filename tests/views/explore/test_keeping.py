@@ -118,7 +118,7 @@ def test_the_file_of_the_case_is_not_replaced(tmp_path):
 
 NAMES = [
     *("", " ", ".", "..", "../up", "/tmp/x", "a/b", "a\\b", ".hidden", "a.b", "a.toml.toml", "~", "a\0b", "a\nb"),
-    *("-rf", "x" * 81, "\ud800", "C:x", "a%2fb", "$HOME", None, 5, ["a"], {"name": "a"}),
+    *("-rf", "x" * 81, "\U0001d49c" * 80, "\ud800", "C:x", "a%2fb", "$HOME", None, 5, ["a"], {"name": "a"}),
 ]
 
 

@@ -241,3 +241,66 @@ def test_memory_stays_flat(session):
 
 def test_names_of_requests_are_listed_once():
     assert set(module.OF_NEWEST) <= set(ANSWERS)
+
+
+WRONG = {  # kind of request, fields of any type: what is said
+    "names of numbers": ("ask", {"show": 5}, "show must be a list of at most 100 names, got 5"),
+    "50 000 names": ("tolerances", {"show": ["O"] * 50_000}, "show must be a list of at most 100 names"),
+    "too many angles": ("tolerances", {"count": 10**9}, "count must be a whole number from 1 to 3600, got 1000000000"),
+    "half an angle": ("tolerances", {"count": 1.5}, "count must be a whole number from 1 to 3600, got 1.5"),
+    "no goal": ("optimise", {}, "a request optimise needs vary, goal, output"),
+    "no output": ("sensitivities", {}, "a request sensitivities needs output"),
+    "no bounds": (
+        "optimise",
+        {"vary": {"crank_length": 5}, "goal": "minimise", "output": "rms O"},
+        "crank_length must vary",
+    ),
+    "bounds of nothing": (
+        "optimise",
+        {"vary": 5, "goal": "minimise", "output": "rms O"},
+        "vary must be an object, got 5",
+    ),
+    "limits of a number": ("optimise", {"limits": 5}, "limits must be a list, got 5"),
+    "no action": ("edit", {}, "a request edit needs action"),
+    "action of a list": ("edit", {"action": [1]}, "action must be an object, got [1]"),
+}
+
+
+@every("name", WRONG)
+def test_wrong_fields_of_questions_are_told(session, name):
+    kind, fields, text = WRONG[name]
+    found = asked(session, kind, state=PLAIN, **fields)
+    assert text in found["problem"]
+    assert "fault of the library" not in found["problem"]
+
+
+def test_a_state_without_variant_is_of_the_first(session):
+    assert asked(session, state={})["values"] == asked(session, state=PLAIN)["values"]
+    assert "running" in asked(session, "running", state={})
+    assert asked(session, "describe", state={"values": {"slider.mass": 5e-324}})["parameters"]
+
+
+def test_a_drag_begins_with_the_machine_that_is_shown(session, monkeypatch):
+    shown = asked(session, state=PLAIN)
+    place = {"handle": "crank_length", "x": 0.31, "y": 0.0, "index": 0, "step": 0.01, "snap": True}
+    solved = []
+    solve = ks.Scene.solve
+    monkeypatch.setattr(
+        ks.Scene, "solve", lambda scene, *given, **more: solved.append(scene) or solve(scene, *given, **more)
+    )
+    found = asked(session, "drag", state=PLAIN, **place)
+    assert shown["values"]["crank_length"] == 0.3
+    assert found["state"]["values"] == {"crank_length": 0.31}
+    assert len(solved) == 1
+
+
+def test_packed_answers_are_freed_at_once():
+    """A server answers for hours: no answer waits for the garbage collection."""
+    gc.collect()
+    gc.disable()
+    try:
+        header, buffers = packed({"values": np.zeros(10), "inner": [{"more": np.zeros(3, dtype=np.float32)}]})
+        del header, buffers
+        assert gc.collect() == 0
+    finally:
+        gc.enable()
