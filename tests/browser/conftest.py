@@ -19,10 +19,11 @@ def missing():
 
 
 @pytest.fixture(scope="module")
-def driver():
+def driver(request):
     """Chromium, driven by Selenium, that keeps a log of its console and of all that it asks for.
 
-    It ends with its tests, and does not draw turning mechanisms beside all others.
+    It ends with its tests, and does not draw turning mechanisms beside all others. A module that measures time has
+    `LOGS = ("browser",)`: a log of all that is asked for costs as much time as the page.
     """
     if missing():
         pytest.skip(missing())
@@ -34,7 +35,8 @@ def driver():
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         options.add_argument("--no-sandbox")
     options.binary_location = shutil.which(TOOLS[0])
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    logs = getattr(request.module, "LOGS", ("browser", "performance"))
+    options.set_capability("goog:loggingPrefs", dict.fromkeys(logs, "ALL"))
     found = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which(TOOLS[1])))
     found.set_script_timeout(30)
     yield found

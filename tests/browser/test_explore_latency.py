@@ -16,6 +16,7 @@ from kinetostatics.views.explore.session import Session
 
 MEDIAN, WORST = 30.0, 50.0
 """Limits of the latency and of its 95 % quantile, ms."""
+LOGS = ("browser",)
 FIGURES, MOVES, PACE = 10, 150, 1.0 / 60.0
 WATCH = """
 page.latencies = [];

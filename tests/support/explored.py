@@ -30,7 +30,7 @@ class ExplorePage:
     def __init__(self, driver, address, fields=""):
         self.driver = driver
         driver.get("about:blank")
-        for kind in ("browser", "performance"):
+        for kind in driver.log_types:
             driver.get_log(kind)
         driver.get(address + fields)
         self.wait(lambda: self.script("return document.querySelector('.explore').dataset.shown"))
