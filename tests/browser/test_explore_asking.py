@@ -202,6 +202,31 @@ def test_values_of_a_search_are_taken_in_one_step_of_undo(page):
     assert page.state["values"] == {}
 
 
+def test_values_of_a_search_belong_to_the_state_that_was_searched(page):
+    start(page, ["spring.stiffness"])
+    page.slide("slider.mass", 300)
+    page.wait(lambda: page.all(".search .take"))
+    found = ks.design.optimise(CIRCLE, {"spring.stiffness": (0.0, 1.35e6)}, "largest_absolute balancing_torque")
+    page.find(".search .take").send_keys(Keys.ENTER)
+    page.settled()
+    assert page.state["values"] == {"spring.stiffness": pytest.approx(found.values["spring.stiffness"], rel=1e-6)}
+    page.tab("plain")
+    assert not page.all(".search .take")
+
+
+def test_a_search_ends_when_another_machine_is_chosen(page):
+    start(page, LONG)
+    page.wait(lambda: step(page))
+    page.tab("plain")
+    page.wait(lambda: not searches())
+    assert page.find(".search .progress").text == "Cancelled, as another machine is shown."
+    assert page.find(".search button[type=submit]").is_enabled()
+    assert not page.find(".search button:not([type=submit])").is_enabled()
+    start(page, ["coupler.mass"])
+    page.wait(lambda: page.all(".search .take"))
+    assert page.severe() == []
+
+
 def test_a_search_that_cannot_be_says_why(page):
     start(page, [])
     assert "Tick" in page.find(".search .progress").text

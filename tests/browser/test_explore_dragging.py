@@ -150,6 +150,42 @@ def test_a_gap_is_told_in_words_the_last_machine_stays_as_a_ghost_and_the_way_ba
     assert page.severe() == []
 
 
+OTHER_CHANGES = {
+    "page.move(-1)": {"variant": "plain", "values": {}},
+    "page.set('slider.mass', 700, false)": {"variant": "plain", "values": {"slider.mass": 700.0}},
+    "page.turnTo('cam-circle')": {"variant": "cam-circle", "values": {}},
+}
+
+
+@pytest.mark.parametrize("change", OTHER_CHANGES)
+def test_a_drag_that_is_answered_after_another_change_is_dropped(opened, change):
+    page = opened("slider")
+    page.slide("slider.mass", 620)
+    wanted = "page.drag({handle: 'coupler_length', x: 2.6, y: 0, index: 0, snap: true, step: page.shown.snap}, true); "
+    page.script(wanted + change)
+    page.settled()
+    assert page.state == OTHER_CHANGES[change]
+    assert page.script("return page.shown.state") == page.state
+    assert page.script("return page.known.parameters.length") == page.script("return page.parameters.rows.size")
+    assert page.script("return page.history.last") is (change != "page.move(-1)")
+    assert page.severe() == []
+
+
+def test_impossible_numbers_of_a_drag_are_told_while_it_is_held(opened):
+    page = opened("slider")
+    page.tab("cam-circle")
+    wanted = "page.drag({handle: 'cam.radius', x: 0, y: 0, index: 0, snap: true, step: 0.01}, arguments[0])"
+    page.script(wanted, True)
+    page.wait(lambda: "radius must be greater than 0" in page.find(".problem").text)
+    assert page.all(".drawing .ghost")
+    page.script(wanted, False)
+    page.settled()
+    assert page.state == {"variant": "cam-circle", "values": {}}
+    assert page.script("return page.shown.state") == page.state
+    assert not page.find(".problem").is_displayed()
+    assert not page.all(".drawing .ghost")
+
+
 def test_keys_move_a_point_by_a_step_by_ten_and_without_snapping(opened):
     keys = webdriver.Keys
     page = opened("four-bar")

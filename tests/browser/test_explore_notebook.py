@@ -30,6 +30,7 @@ CELLS = {
     "second": "v = ks.explore(w.scene)\nv",
     "again": "w",
     "set": "w.state = {'variant': 'plain', 'values': {'crank_length': 0.25}}",
+    "set variant": "w.state = {'variant': 'plain'}",
     "end": "import os\nos._exit(1)",
 }
 CURVES = "return [...arguments[0].querySelectorAll('.chart .curve')].map((path) => path.getAttribute('d'))"
@@ -183,6 +184,11 @@ def test_a_state_set_in_a_cell_is_shown(shown):
     notebook.wait.until(lambda _: notebook.curves(page) != before)
     assert page.find_element(By.CSS_SELECTOR, "[aria-selected=true]").text == "plain"
     assert notebook.number(page, "crank_length") == 0.25
+    notebook.run("set variant")
+    notebook.wait.until(lambda _: notebook.number(page, "crank_length") == 0.3)
+    notebook.drag(page, "slider.mass", 25)
+    mass = notebook.number(page, "slider.mass")
+    assert notebook.printed() == [mass, {"variant": "plain", "values": {"slider.mass": mass}}]
 
 
 def test_keys_in_the_page_do_not_edit_the_notebook(shown):

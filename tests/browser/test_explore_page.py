@@ -80,6 +80,16 @@ def test_a_hostile_address_gives_words_and_the_first_state(explored, name):
     assert page.severe() == []
 
 
+@pytest.mark.parametrize("state", ["{}", '{"variant": "plain"}'])
+def test_an_address_without_values_and_with_an_endless_angle_opens(explored, state):
+    page = explored("sawframe_2r63", fields=f"&state={quote(state)}&angle=Infinity")
+    assert shown(page) == START
+    assert page.script("return page.clock.index") == 0
+    page.slide("slider.mass", 620)
+    assert page.state == {"variant": "plain", "values": {"slider.mass": 620.0}}
+    assert page.severe() == []
+
+
 def test_a_link_reopens_the_state_in_another_tab(explored):
     page = explored("sawframe_2r63")
     page.slide("slider.mass", 620)

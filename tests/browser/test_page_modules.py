@@ -80,6 +80,9 @@ TICKS = "return [...one.texts.children].map((text) => [text.textContent, text.ge
     ([0.0, 4e7], ["0", "90", "180", "270", "360"], ["0", "1e+7", "2e+7", "3e+7", "4e+7"]),
     ([0.0, 4e-9], ["0", "90", "180", "270", "360"], ["0", "1e-9", "2e-9", "3e-9", "4e-9"]),
     ([], ["0", "90", "180", "270", "360"], ["-1.0", "-0.5", "0.0", "0.5", "1.0"]),
+    ([1e6, 1000010.0], ["0", "90", "180", "270", "360"], [str(1000000 + more) for more in (0, 2, 4, 6, 8, 10)]),
+    ([5e-324, 1e-310], ["0", "90", "180", "270", "360"], ["-0.10", "-0.05", "0.00", "0.05", "0.10"]),
+    ([1.7e308, 0.0, 1.0], ["0", "90", "180", "270", "360"], ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
 ])  # fmt: skip
 def test_ticks_are_round(chart, values, across, up):
     ticks = chart([turn(values)])(TICKS)
@@ -260,6 +263,33 @@ def test_band_and_staleness_are_shown(chart):
     assert run("return one.svg.classList.contains('stale')") is False
 
 
+def test_gap_of_a_band_is_no_area(chart):
+    run = chart([turn([1.0, 2.0, 3.0, 4.0, 3.0, 2.0])])
+    band = (
+        "one.band({x: [0, 60, 120, 180, 240, 300], low: arguments[0].map((y) => y ?? NaN), high: [2, 3, 4, 5, 4, 3]})"
+    )
+    run(band, [0.0, 1.0, None, 3.0, 2.0, 1.0])
+    areas = re.findall("M([^M]*)Z", run("return one.bands.getAttribute('d')"))
+    scale = run("return one.scaleX")
+    across = [[round(float(point.split()[0]) / scale) for point in area.split("L")] for area in areas]
+    assert across == [[0, 60, 60, 0], [180, 240, 300, 360, 360, 300, 240, 180]]
+
+
+def test_infinite_numbers_are_gaps(chart):
+    run = chart([])
+    run("one.set([{...arguments[0], y: [1, Infinity, 2, -Infinity]}], {sight: null})", turn([0.0] * 4))
+    run("one.band({x: [0, 120, 240], low: [1, -Infinity, 1], high: [2, 2, 2]})")
+    assert "NaN" not in run("return one.svg.outerHTML")
+    assert [text for text, anchor in run(TICKS) if anchor == "end" and text] == [
+        "1.0",
+        "1.2",
+        "1.4",
+        "1.6",
+        "1.8",
+        "2.0",
+    ]
+
+
 REDRAW_LIMIT = 60.0
 """Milliseconds for ten charts of two curves of 360 points on a machine that is busy with other tests; alone 4 to 8."""
 
@@ -369,6 +399,8 @@ def test_clock_turns_by_keys_and_controls(page):
     page.find_element(By.TAG_NAME, "body").send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.SHIFT, Keys.ARROW_LEFT)
     assert run("return [clock.index, clock.degrees, heard]") == [232, 696, [0, 1, 2, 232]]
     assert run("const it = document.querySelector('.angle'); return [it.max, it.value]") == ["717", "696"]
+    run("[Infinity, -Infinity, NaN].forEach((index) => clock.choose(index))")
+    assert run("return clock.index") == 232
     run("clock.span({count: 120, step: 3, way: 1})")
     assert run("return clock.index") == 112
     page.find_element(By.CLASS_NAME, "play").click()

@@ -11,6 +11,7 @@ const TURN_STEPS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360];
 const CLOSEST = 1e-4; // smallest share of the range that a zoom shows
 const FARTHEST = 20; // pixels from the pointer to a point that is read
 const LONGEST_NAME = 30;
+const LARGEST_VALUE = 1e300, SMALLEST_VALUE = 1e-300; // sizes of values: larger ones are gaps, smaller ones zero
 
 // 1, 2 or 5 times a power of ten, not below a number.
 function roundStep(least) {
@@ -25,8 +26,12 @@ function multiples(step, [low, high]) {
 
 function tickText(value, step) {
   const decimals = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
-  if (Math.abs(value) >= 1e6 || decimals > 5) return value ? Number(value.toPrecision(6)).toExponential() : "0";
-  return (value || 0).toFixed(decimals);
+  const size = Math.abs(value), fixed = size < 1e21 ? (value || 0).toFixed(Math.min(100, decimals)) : "";
+  if (size < 1e6 && decimals <= 5) return fixed;
+  if (size < step / 2) return "0";
+  const [most, least] = [size, step].map((number) => Math.floor(Math.log10(number) + 1e-9));
+  const scientific = value.toExponential(Math.min(15, Math.max(0, most - least)));
+  return fixed && fixed.length < scientific.length ? fixed : scientific;
 }
 
 const spanOf = ([low, high]) => high - low;
@@ -37,7 +42,7 @@ const significant = (value) => (Number.isFinite(value) ? String(Number(value.toP
 
 export class Chart {
   constructor(parent, { label = "", unit = "", plane = false, period = 360, height = 220 } = {}) {
-    Object.assign(this, { parent, label, unit, plane, period, height, sight: Infinity, curves: [], area: null });
+    Object.assign(this, { parent, label, unit, plane, period, height, sight: LARGEST_VALUE, curves: [], area: null });
     Object.assign(this, { range: null, zoom: null, angle: null, tips: null, drag: null, onchoose: null, drawn: [] });
     this.svg = element("svg", parent, { class: `chart ${plane ? "plane" : "turn"}`, role: "img", tabindex: 0 });
     this.build();
@@ -71,7 +76,7 @@ export class Chart {
   // Curves, and another label, unit or limit of what is drawn: larger values are gaps.
   set(curves, { label = this.label, unit = this.unit, sight = Infinity } = {}) {
     if (label !== this.label || unit !== this.unit) Object.assign(this, { range: null, zoom: null });
-    Object.assign(this, { curves, label, unit, sight: sight === null ? Infinity : sight });
+    Object.assign(this, { curves, label, unit, sight: Math.min(sight ?? LARGEST_VALUE, LARGEST_VALUE) });
     this.draw();
   }
 
@@ -109,7 +114,8 @@ export class Chart {
     if (low > high) return null;
     const wide = ([least, most]) => {
       const size = Math.max(Math.abs(least), Math.abs(most)), span = most - least;
-      if (span <= 1e-9 * size || span === 0) return [least - (size || 1) * 0.1, most + (size || 1) * 0.1];
+      if (size < SMALLEST_VALUE) return [-0.1, 0.1];
+      if (span <= 1e-9 * size) return [least - size * 0.1, most + size * 0.1];
       return [least - AIR * span, most + AIR * span];
     };
     return [this.plane ? wide([left, right]) : [0, this.period], wide([low, high])];
@@ -216,9 +222,24 @@ export class Chart {
       put(path, { class: thin ? "curve thin" : "curve", stroke: colour, "stroke-dasharray": dash || "none" });
       put(dots.children[number], { fill: curve.colour });
     });
-    const side = (name) => this.trace({ x: area.x, y: area[name] });
-    const back = () => side("low").slice(1).split("L").reverse().join("L");
-    put(this.bands, { d: area && area.x.length ? `${side("high")}L${back()}Z` : "" });
+    put(this.bands, { d: area ? this.between(area) : "" });
+  }
+
+  // Closed paths around an area: one for each run of points without a gap.
+  between({ x, low, high }) {
+    let text = "", above = [], below = [];
+    const corner = (left, up) => `${short(this.x(left))} ${short(this.y(up))}`;
+    const end = () => {
+      if (above.length > 1) text += `M${[...above, ...below.reverse()].join("L")}Z`;
+      [above, below] = [[], []];
+    };
+    this.visit({ x, y: high }, (left, up, place) => {
+      if (!(Math.abs(low[place]) <= this.sight)) { end(); return; }
+      above.push(corner(left, up));
+      below.push(corner(left, low[place]));
+    }, end);
+    end();
+    return text;
   }
 
   // The chosen crank angle: a line over the turn and a point on each curve, at `tips` [[x, y], ...] if given.

@@ -33,6 +33,7 @@ export class Clock {
   }
 
   choose(index) {
+    if (!Number.isFinite(index)) return;
     this.run(false);
     this.turnTo(Math.round(index));
     this.place = this.index;

@@ -5,6 +5,7 @@ import { button, checkbox, made } from "./html.js";
 
 export const NOW = "#1f4e79", BEFORE = "#5b6873";
 const DASHES = "5 3", HEIGHT = 205, PLANE_HEIGHT = 290;
+const CAPTION_DIGITS = 4; // of the largest value of a curve in its caption
 const RUNNING = "motor speed"; // of a case with a drive; it comes after the curves
 
 // Values of a quantity in its shown unit, of a vector its magnitude.
@@ -17,6 +18,12 @@ function magnitudes({ values, vector, factor }) {
 function parts({ values, factor }) {
   const count = values.length / 2;
   return [values.subarray(0, count), values.subarray(count)].map((part) => part.map((value) => factor * value));
+}
+
+// Decimals that give the largest value of a curve, of those in sight, four significant digits.
+function decimalsOf(values, sight) {
+  const largest = Math.max(0, ...values.map(Math.abs).filter((size) => size <= sight));
+  return largest ? Math.min(12, Math.max(0, CAPTION_DIGITS - 1 - Math.floor(Math.log10(largest)))) : 0;
 }
 
 // One chart with its name, values at the crank angle, and buttons.
@@ -50,8 +57,9 @@ class Figure {
       const before = this.curves?.find((other) => other.quantity === quantity && other.factor === item.factor);
       if (before && before.name === style.name) return before;
       const own = { ...quantity, factor: item.factor }, { angle, period } = answer;
-      const [x, y] = plane ? parts(own) : [angle, magnitudes(own)];
-      return { ...style, x, y, period, angle, quantity, factor: item.factor };
+      const sizes = magnitudes(own), decimals = decimalsOf(sizes, item.sight ?? Number.MAX_VALUE);
+      const [x, y] = plane ? parts(own) : [angle, sizes];
+      return { ...style, x, y, period, angle, quantity, factor: item.factor, decimals };
     };
     const curves = [curve(shown, item, { name: "shown", colour: NOW })];
     if (other && other.vector === item.vector) {
@@ -77,8 +85,7 @@ class Figure {
   follow(degrees) {
     if (!this.item || this.element.hidden) return;
     this.chart.cursor(degrees);
-    const { decimals } = this.item;
-    const texts = this.curves.map(({ x, y, period }) => {
+    const texts = this.curves.map(({ x, y, period, decimals }) => {
       const place = Math.round((degrees % period) * y.length / period) % y.length;
       const value = this.plane ? [x[place], y[place]] : [y[place]];
       return value.map((part) => shown(part, decimals)).join(", ") || "none";

@@ -36,7 +36,7 @@ export class Explore {
   // `transport` sends requests; `address` keeps what is shown, {read(), write(fields)}, all texts.
   constructor(root, transport, address) {
     Object.assign(this, { root, address, known: null, shown: null, reference: null, frozen: null, answered: null });
-    Object.assign(this, { moving: false, ready: false, described: null, kept: new Map(), timer: null });
+    Object.assign(this, { moving: false, ready: false, described: null, presented: 0, kept: new Map(), timer: null });
     this.listeners = { known: [], changed: [], shown: [], compared: [] };
     this.requests = new Requests(transport);
     this.requests.onlook = (answer, asked) => this.receive(answer, asked);
@@ -57,7 +57,7 @@ export class Explore {
 
   tell(kind, item) { this.listeners[kind].forEach((listener) => listener(item)); }
 
-  get state() { return this.history.now; }
+  get state() { return this.history?.now; }
 
   get names() { return this.curves.names; }
 
@@ -132,7 +132,7 @@ export class Explore {
     this.keeper = new Keep(this.keeping, this, answer.file);
     for (const { name } of answer.variants) this.tab(name);
     if (answer.start.chain) this.groups = new Groups(this.grouping, this);
-    this.history = new History(answer.start);
+    this.history = new History(this.whole(answer.start));
     this.curves.chosen = answer.show; // null: the first curves of the machine
     if (Array.isArray(planes)) this.curves.planes = new Set(planes);
     this.present();
@@ -163,8 +163,11 @@ export class Explore {
     this.change({ ...this.state, values }, still);
   }
 
+  // A state as an address or a notebook may give it, with all its keys.
+  whole(state) { return { variant: this.state?.variant ?? this.variants[0].name, values: {}, ...state }; }
+
   change(state, still = false) {
-    this.record(state, still);
+    this.record(this.whole(state), still);
     this.present();
   }
 
@@ -176,7 +179,8 @@ export class Explore {
 
   drag(fields, still = true) {
     this.clock.run(false);
-    this.requests.look("drag", { state: this.state, show: this.names, count: COUNT, ...fields, still });
+    const { state, names: show, presented } = this;
+    this.requests.look("drag", { state, show, count: COUNT, ...fields, still, presented });
   }
 
   move(steps) {
@@ -186,6 +190,7 @@ export class Explore {
 
   // Show the present state: describe it first if it is of another structure.
   present() {
+    this.presented += 1;
     const { state } = this, structure = keyOf({ ...state, values: {} });
     this.kept.set(state.variant, state);
     this.remember();
@@ -198,8 +203,7 @@ export class Explore {
     this.requests.ask("describe", { state: { ...this.state, values: {} } }, (answer) => {
       if (structure !== this.asked) return;
       if (answer.problem) { this.refuse(answer); return; }
-      this.described = structure;
-      this.known = answer;
+      Object.assign(this, { described: structure, known: answer, shown: null });
       this.curves.chosen ??= firstCurves(answer.quantities);
       this.curves.offer(answer.quantities, answer.drive);
       this.parameters.describe(answer.parameters);
@@ -261,12 +265,7 @@ export class Explore {
   ownReference() { return this.variants.find(({ name }) => name === this.state.variant)?.reference ?? ""; }
 
   receive(answer, asked) {
-    if (answer.kind === "drag" && answer.state) {
-      this.record(answer.state, asked.still);
-      this.kept.set(answer.state.variant, answer.state);
-      this.remember();
-      this.tell("changed", answer.state);
-    }
+    if (answer.kind === "drag" && !this.follows(answer, asked)) return;
     if (keyOf({ ...answer.state, values: {} }) !== this.described) return; // of the tab before
     this.answered = answer;
     if (answer.problem) { this.refuse(answer); return; }
@@ -281,6 +280,20 @@ export class Explore {
     this.tell("shown", answer);
   }
 
+  // Take the state of a drag. Whether the answer is to be shown: not if another state was chosen meanwhile, nor if
+  // the point is dropped where its numbers are impossible; then the machine before is asked for again.
+  follows(answer, { state: before, still, presented }) {
+    if (presented !== this.presented) return false;
+    const impossible = answer.problem && keyOf(answer.state) === keyOf(before);
+    const state = impossible ? this.state : answer.state;
+    this.record(state, still);
+    this.kept.set(state.variant, state);
+    this.remember();
+    this.tell("changed", state);
+    if (impossible && !still) this.look();
+    return still || !impossible;
+  }
+
   // A state without numbers: the last machine stays as a ghost.
   refuse(answer) {
     this.shown = null;
@@ -288,7 +301,7 @@ export class Explore {
     this.note([]);
     this.mechanism.ghost();
     this.curves.stale();
-    if (this.known) this.showFields(answer.state);
+    if (this.known) this.showFields(this.state);
     this.root.dataset.shown = answer.id;
     this.tell("shown", answer);
   }

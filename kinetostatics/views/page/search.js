@@ -6,7 +6,7 @@ const RESULT_DIGITS = 6;
 
 export class Search {
   constructor(parent, explore) {
-    Object.assign(this, { explore, fields: new Map() });
+    Object.assign(this, { explore, fields: new Map(), stop: null });
     this.root = made(parent, "form", { class: "search" });
     this.root.addEventListener("submit", (event) => { event.preventDefault(); this.start(); });
     this.goal = document.createElement("select");
@@ -26,7 +26,12 @@ export class Search {
     this.result = made(this.root, "div", { class: "result wide" });
   }
 
+  // Parameters and quantities of another machine: a search of the one before ends, and its result goes.
   describe(fields, quantities) {
+    this.result.replaceChildren();
+    this.progress.textContent = this.stop ? "Cancelled, as another machine is shown." : "";
+    if (this.stop) this.explore.requests.ask("cancel", {}, () => {});
+    this.ended();
     const ticked = new Set(this.ticked);
     this.fields = fields;
     this.output.describe(quantities);
@@ -58,18 +63,23 @@ export class Search {
     const { shown, reference, requests } = this.explore;
     if (!shown) { this.progress.textContent = "A machine that cannot be assembled has no numbers."; return; }
     const machine = { state: shown.state, reference: reference ? reference.state : null };
-    requests.ask("optimise", { ...machine, ...goal, vary, limits }, (answer) => this.told(answer, shown.values));
+    this.stop = requests.ask("optimise", { ...machine, ...goal, vary, limits }, (answer) => this.told(answer, shown));
     this.result.replaceChildren();
     this.progress.textContent = "The search starts …";
-    this.running(true);
+    this.starter.disabled = true;
+    this.canceller.disabled = false;
   }
 
-  running(now) {
-    this.starter.disabled = now;
-    this.canceller.disabled = !now;
+  // No search runs any more: await no answers.
+  ended() {
+    this.stop?.();
+    this.stop = null;
+    this.starter.disabled = false;
+    this.canceller.disabled = true;
   }
 
-  told(answer, before) {
+  // `searched`: the answer to a look of the machine from which the search started.
+  told(answer, searched) {
     const { step, goal, unit, best, kept } = answer;
     if (step) {
       const numbers = Object.entries(best).map(([path, value]) => `${this.named(path)} ${this.text(path, value)}`);
@@ -79,12 +89,12 @@ export class Search {
     }
     if (answer.problem) this.progress.textContent = answer.problem;
     else if (answer.cancelled) this.progress.textContent = "Cancelled.";
-    else if (answer.values) this.finish(answer, before);
+    else if (answer.values) this.finish(answer, searched);
     else return;
-    this.running(false);
+    this.ended();
   }
 
-  finish({ goal, values, rows, active, notes }, now) {
+  finish({ goal, values, rows, active, notes }, { state, values: now }) {
     const binds = active.length ? `${active.join(", ")} binds.` : "No limit binds.";
     this.progress.textContent = [`Found the ${goal}. ${binds}`, ...notes].join(" ");
     const table = made(this.result, "table"), head = made(table, "tr");
@@ -98,9 +108,7 @@ export class Search {
     for (const [path, value] of Object.entries(values)) {
       line(this.named(path), this.text(path, now[path]), this.text(path, value));
     }
-    button(this.result, "Take these values", () => {
-      const { state } = this.explore;
-      this.explore.change({ ...state, values: { ...state.values, ...values } });
-    }, { class: "take" });
+    const taken = { ...state, values: { ...state.values, ...values } };
+    button(this.result, "Take these values", () => this.explore.change(taken), { class: "take" });
   }
 }
