@@ -214,8 +214,8 @@ export class Explore {
         tab.tabIndex = chosen ? 0 : -1;
       }
       this.tell("known", answer);
-      this.askReference();
       this.look();
+      this.askReference();
     });
   }
 
