@@ -75,7 +75,6 @@ def page(driver, address):
     return Builder(driver, address)
 
 
-@pytest.mark.timeout(120)
 def test_a_group_is_added_changed_by_a_slider_removed_and_comes_back_by_undo(page):
     page.wait_for("crank", "gravity", "1 rocker B", "1 torque", "2 force")
     page.add("slider")
@@ -99,7 +98,6 @@ def test_a_group_is_added_changed_by_a_slider_removed_and_comes_back_by_undo(pag
     assert page.severe() == []
 
 
-@pytest.mark.timeout(120)
 def test_a_wrong_text_is_told_beside_its_field_and_changes_nothing(page):
     page.wait_for("1 rocker B")
     state = page.state
@@ -114,7 +112,6 @@ def test_a_wrong_text_is_told_beside_its_field_and_changes_nothing(page):
     assert page.severe() == []
 
 
-@pytest.mark.timeout(120)
 def test_a_group_that_carries_others_is_removed_with_them_on_request(page):
     page.add("slider")
     page.wait_for("2 slider C")
@@ -127,7 +124,6 @@ def test_a_group_that_carries_others_is_removed_with_them_on_request(page):
     assert len(page.state["chain"]["loads"]) == 2
 
 
-@pytest.mark.timeout(120)
 def test_a_load_that_the_machine_cannot_take_is_refused_beside_the_list(page):
     page.wait_for("1 rocker B")
     page.add("spring")
@@ -135,7 +131,6 @@ def test_a_load_that_the_machine_cannot_take_is_refused_beside_the_list(page):
     assert page.severe() == []
 
 
-@pytest.mark.timeout(120)
 def test_names_with_markup_are_text(page):
     page.add("slider")
     page.wait_for("2 slider C")
@@ -145,7 +140,6 @@ def test_names_with_markup_are_text(page):
     assert page.severe() == []
 
 
-@pytest.mark.timeout(120)
 def test_the_address_reopens_the_chain(page, driver):
     page.add("dyad")
     page.wait(lambda: page.kinds == ["rocker", "dyad"])

@@ -64,7 +64,6 @@ def fields(scene):
                 "low": math.floor(low * factor / step + 1e-9) * step / factor,
                 "high": math.ceil(high * factor / step - 1e-9) * step / factor,
                 "step": step / factor,
-                "decimals": max(0, -math.floor(math.log10(step))),
             }
         )
     return [field for group in found.values() for field in group]

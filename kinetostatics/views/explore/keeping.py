@@ -63,7 +63,18 @@ def save(session, request):
     comment = f"Saved by: kinetostatics explore {session.case.path.name}" if session.case else ""
     write_case(path, session.title, scenes, session.source, comment=comment, sizing=sizing)
     session.saved = state, str(path.absolute()), list(scenes)[-1]
-    return {"saved": path.name, "path": str(path.absolute())}
+    return {"saved": path.name, "path": str(path.absolute()), "notes": _left_out(session, list(scenes))}
+
+
+def _left_out(session, names):
+    """Sentences on what the case has and the saved file has not."""
+    case = session.case
+    parts = {
+        "drive": case is not None and any(item.motor for name, item in case.variants.items() if name in names),
+        "tolerances": case is not None and bool(case.tolerances),
+    }
+    left = " and ".join(name for name, has in parts.items() if has)
+    return [f"The {left} of {case.path.name} are not in it; copy their tables."] if left else []
 
 
 def python(session, request):

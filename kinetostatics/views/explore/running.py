@@ -5,8 +5,6 @@ import numpy as np
 from ...drive.steady_running import steady
 from ...errors import ParameterError
 from ...numbers.formatting import pretty_unit
-from ..canvas import ordinary_size
-from ..report.tables import decimals
 from .fields import shown_unit
 
 COUNT = 360
@@ -42,7 +40,6 @@ def motor_speed(session, state):
                 "label": "motor speed",
                 "unit": pretty_unit(unit),
                 "factor": factor,
-                "decimals": decimals(factor * ordinary_size([values])),
                 "vector": False,
                 "values": values,
             }

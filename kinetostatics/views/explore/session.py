@@ -23,7 +23,7 @@ from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import drawn_limit, ordinary_size, unit_for
 from ..movement import drawing_of
-from ..report.tables import KINDS, decimals
+from ..report.tables import KINDS
 from . import answers, fields, groups, keeping, running, searching
 from .handles import dragged, handle_data
 
@@ -194,7 +194,7 @@ def open_page(session, request):
 
 def kept_in_address(session, address):
     """State and names of quantities in the texts of an address, those that it has."""
-    found = {}
+    found: dict[str, Any] = {}
     for key, name in (("state", "start"), ("show", "show")):
         text = address.get(key)
         if text is None:
@@ -208,6 +208,7 @@ def kept_in_address(session, address):
             raise ParameterError(f"{key} is no JSON of at most {MAX_ADDRESS} characters")
     if "start" in found:
         session.scene(found["start"])
+        found["start"] = {"variant": session.first, "values": {}} | found["start"]
     if "show" in found:
         require_names(found["show"])
     return found
@@ -226,7 +227,8 @@ def require_fields(request):
             require_state(key, request[key])
     require_names(request.get("show", []))
     count_of(request)
-    kinds = {"vary": (dict, "an object"), "limits": (list, "a list"), "action": (dict, "an object")}
+    kinds: dict[str, tuple[Any, str]] = {"limits": (list, "a list"), "spreads": (dict | None, "an object")}
+    kinds |= dict.fromkeys(("vary", "action"), (dict, "an object"))
     kinds |= dict.fromkeys(("goal", "output"), (str, "a text"))
     wrong = [
         f"{key} must be {words}, got {checks.shown(request[key])}"
@@ -296,7 +298,7 @@ def drag(session, request):
     try:
         return {"state": new} | look(session, request | {"state": new})
     except KinetostaticsError as error:
-        return {"state": new, "problem": str(error)}
+        return {"state": new, "problem": problem_text(error)}
 
 
 def curve(solution, known):
@@ -313,7 +315,6 @@ def curve(solution, known):
         "label": known.label,
         "unit": pretty_unit(unit),
         "factor": factor,
-        "decimals": decimals(factor * most),
         "vector": known.vector,
         "sight": factor * limit if np.isfinite(limit) else None,
         "values": values,

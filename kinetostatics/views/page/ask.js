@@ -42,9 +42,9 @@ export class Ask {
     this.figures = new Numbers(numbers, "Means and torque extrema", FIGURES);
     this.notes = made(numbers, "p", { class: "notes" });
     const change = this.section("What should I change?");
-    this.choice = new OutputChoice(change, () => this.follow());
+    this.choice = new OutputChoice(change, () => this.changed());
     this.bars = new SensitivityBars(change, (path) => explore.focus(path));
-    this.uncertainties = new Uncertainties(this.section("Tolerances"), () => this.follow());
+    this.uncertainties = new Uncertainties(this.section("Tolerances"), () => this.changed());
     this.search = new Search(this.section("Optimise"), explore);
     explore.onknown((answer) => this.describe(answer));
     explore.onshown(() => this.changed());
@@ -71,6 +71,7 @@ export class Ask {
   changed() {
     this.drop();
     for (const answer of [this.extremes.table, this.figures.table, this.bars.root]) answer.classList.add("stale");
+    this.notes.textContent = "";
     this.clearBands();
     this.timer = setTimeout(() => this.follow(), DELAY);
   }

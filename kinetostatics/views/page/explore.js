@@ -164,9 +164,10 @@ export class Explore {
   }
 
   // A state as an address or a notebook may give it, with all its keys.
-  whole(state) { return { variant: this.state?.variant ?? this.variants[0].name, values: {}, ...state }; }
+  whole(state) { return { variant: this.state?.variant ?? this.variants[0].name, ...state, values: state.values ?? {} }; }
 
   change(state, still = false) {
+    this.opened.notes = []; // on the address
     this.record(this.whole(state), still);
     this.present();
   }
@@ -195,11 +196,11 @@ export class Explore {
     this.kept.set(state.variant, state);
     this.remember();
     this.tell("changed", state);
+    this.asked = structure;
     if (structure === this.described) this.look(); else this.describe(structure);
   }
 
   describe(structure) {
-    this.asked = structure;
     this.requests.ask("describe", { state: { ...this.state, values: {} } }, (answer) => {
       if (structure !== this.asked) return;
       if (answer.problem) { this.refuse(answer); return; }
@@ -307,8 +308,10 @@ export class Explore {
   }
 
   showFields(state) {
-    const values = Object.fromEntries(this.known.parameters.map(({ path, value }) => [path, value]));
-    this.parameters.show({ ...values, ...state.values });
+    const own = Object.fromEntries(this.known.parameters.map(({ path, value }) => [path, value]));
+    const values = { ...own, ...state.values };
+    this.parameters.show(values);
+    this.handles.tellValues(values);
   }
 
   redraw() {
@@ -365,6 +368,8 @@ export class Explore {
 
   lost(reason) {
     this.root.classList.add("lost");
+    this.root.querySelector(".body").inert = true; // nothing answers any more
+    if (this.ready) { this.mechanism.ghost(); this.curves.stale(); }
     this.say(reason || "The library has ended. Start it again, and open the address that it prints.");
   }
 }

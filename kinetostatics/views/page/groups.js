@@ -84,8 +84,10 @@ export class Groups {
 
   // Ask for an action; `place` shows a fault, or `onfault(answer)` where it is given.
   act(action, place, onfault = () => {}) {
+    const { state } = this;
     place.replaceChildren();
-    this.explore.requests.ask("edit", { state: this.state, action }, (answer) => {
+    this.explore.requests.ask("edit", { state, action }, (answer) => {
+      if (this.state !== state) { this.act(action, place, onfault); return; } // changed meanwhile
       if (!answer.problem) {
         this.refusal.replaceChildren();
         this.note.textContent = answer.notes.join(" ");

@@ -45,6 +45,12 @@ export class Handles {
     this.show(this.index);
   }
 
+  // Other values beside the points, where no machine can be shown.
+  tellValues(values) {
+    this.values = values;
+    if (this.told) this.tell(this.told);
+  }
+
   grip({ name, label, kind }) {
     const group = element("g", this.layer, {
       class: `grip grip-${kind}`, tabindex: 0, role: "button", "aria-label": label, "aria-description": HINT,

@@ -41,7 +41,7 @@ export class Keep {
         this.tell(`${answer.exists} exists already.`);
         this.ask(() => this.write(kind, { ...fields, overwrite: true }));
       } else if (answer.saved) {
-        this.tell(`Saved as ${answer.saved}. `);
+        this.tell([`Saved as ${answer.saved}.`, ...answer.notes ?? [], ""].join(" "));
         if (answer.link) made(this.told, "a", { href: answer.link, target: "_blank", rel: "noopener" }, "Open it");
       }
     });

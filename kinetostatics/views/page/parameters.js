@@ -32,7 +32,7 @@ class Row {
     this.number.addEventListener("blur", () => this.reset());
     this.number.addEventListener("keydown", (event) => {
       if (event.key === "Escape") this.reset();
-      if (this.typing && event.ctrlKey) event.stopPropagation(); // undo in the text
+      if (this.typing && (event.ctrlKey || event.metaKey)) event.stopPropagation(); // undo in the text
     });
   }
 

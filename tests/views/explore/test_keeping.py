@@ -1,6 +1,5 @@
 """What the explore page keeps: case files with the same numbers bit for bit, Python text, reports; in one folder."""
 
-import os
 import subprocess
 import sys
 import time
@@ -239,4 +238,3 @@ def test_a_server_killed_while_it_saves_leaves_files_whole(tmp_path):
         case = ks.load_case(tmp_path / "saw.toml")
         assert list(case.variants) == ["plain", "cam-circle"]
         assert case.variants["cam-circle"].parameters["slider.mass"] >= 600.0
-    assert os.listdir(tmp_path)  # noqa: PTH208

@@ -240,7 +240,7 @@ def test_memory_stays_flat(session):
         gc.set_threshold(*usual)
 
 
-def test_names_of_requests_are_listed_once():
+def test_dropped_kinds_are_kinds_of_requests():
     assert set(module.OF_NEWEST) <= set(ANSWERS)
 
 
