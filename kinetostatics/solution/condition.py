@@ -404,9 +404,10 @@ def is_surely_well_conditioned(solution, margins):
     """
     least = 1.0 if solution.mechanism.trusted else 0.0
     for margin in margins:
-        least *= min(margin.min(), 1.0)
-    if not least > 0.0:
-        return False
+        smallest = margin.min()
+        if not smallest > 0.0:  # of each group: two negative ones have a positive product
+            return False
+        least *= min(smallest, 1.0)
     return least >= _sufficient_margin(solution, solution.farthest) or least >= _sufficient_margin(solution)
 
 

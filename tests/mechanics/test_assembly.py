@@ -39,6 +39,20 @@ def test_assembly_error_names_condition_and_intervals():
     )
 
 
+@pytest.mark.parametrize("guides", [(0.0, 0.5), (0.0, np.pi / 2), (0.0, 0.3, 0.6), (0.0, 0.7, 1.4, 2.1)])
+@pytest.mark.parametrize("coupler", [0.05, 0.8])
+def test_gaps_of_several_groups_are_refused(guides, coupler):
+    """Two negative margins have a positive product: none may vouch for the other."""
+    rows = [
+        ks.SliderGroup(coupler, guide=ks.Guide(angle), pin=f"B{row}", label=str(row))
+        for row, angle in enumerate(guides)
+    ]
+    found = ks.Mechanism("star", ks.Crank(1.0), rows)
+    assert gaps(found).intervals == gaps(ks.crank_slider(1.0, coupler)).intervals
+    with pytest.raises(ks.AssemblyError):
+        ks.Scene(found, 10.0).solve(360)
+
+
 def test_round_cam_has_the_gaps_of_the_plain_crank():
     error = gaps(ks.cam_crank_slider(ks.cams.Circle(1.0), 0.8))
     assert_allclose(error.intervals, gaps(ks.crank_slider(1.0, 0.8)).intervals, rtol=1e-15)
