@@ -113,6 +113,7 @@ def write_found(path, case, found):
     pairs = [pair for item in designs for pair in item.sources.items()]
     names = dict.fromkeys([case.reference, *(name for source, other in pairs for name in (other, source))])
     scenes = {name: case.variant(name).scene for name in names}
+    drives = {name: case.variant(name).raw_drive for name in names}
     references = {name: reference for name in names if (reference := case.reference_of(name)) in names}
     for name, result in found.items():
         ends = {name: result}
@@ -122,12 +123,13 @@ def write_found(path, case, found):
             scenes |= named_scenes(end, item.scene)
             of = case.designs[name].variants_of(end)
             references |= {made: case.designs[name].sources[source] for made, source in of.items()}
+            drives |= {made: drives[source] for made, source in of.items()}
     raw = {
         item.name: item.raw | ({} if item.duties else {"variant": item.source, "reference": item.reference})
         for item in designs
     }
     comment = f"Found by: kinetostatics design {case.path.name}"
-    tables = {"designs": raw, "sizing": {name: part.raw for name, part in case.sizing.items()}}
+    tables = {"drives": drives, "designs": raw, "sizing": {name: part.raw for name, part in case.sizing.items()}}
     return case_text.write_case(path, case.title, scenes, case.source, comment=comment, references=references, **tables)
 
 

@@ -78,6 +78,16 @@ class Variant:
         """Flywheel of its drive, on the crank, kg m2; 0 if the file gives none."""
         return 0.0 if self.table.drive is None else self.table.drive.flywheel
 
+    @property
+    def raw_drive(self):
+        """Table of its drive as the file has it, with the path of a motor's file from anywhere; None without a drive."""
+        if self.table.drive is None:
+            return None
+        motor = self.table.drive.raw["motor"]
+        if "file" in motor:
+            motor = motor | {"file": str((self.folder / motor["file"]).absolute())}
+        return self.table.drive.raw | {"motor": motor}
+
     @cached_property
     def _places(self):
         return build.places_by_path(self.table)

@@ -29,10 +29,12 @@ from ..numbers.parameter_tree import Axis
 CAMS: dict[Any, str] = {Circle: "circle", CosineLaw: "cosine-law", Harmonic: "harmonic"}
 
 
-def write_case(path, title, scenes, source="", *, comment="", designs=None, references=None, sizing=None) -> Path:
+def write_case(
+    path, title, scenes, source="", *, comment="", references=None, drives=None, designs=None, sizing=None
+) -> Path:
     """Write a case file of scenes by the names of their variants; `references` is by default the first one.
 
-    A comment precedes them; tables of designs and parts from another case file follow. Raises `ParameterError` for
+    A comment precedes them. Drives by variant, designs and parts by name are tables as another case file has them. Raises `ParameterError` for
     objects without a text in case files, `FileError` if a file cannot be written or a table's file has another text.
     """
     path = Path(path)
@@ -42,7 +44,10 @@ def write_case(path, title, scenes, source="", *, comment="", designs=None, refe
     first = next(iter(scenes))
     parts += [f"reference = {_quoted(first)}"]
     own = {name: reference for name, reference in (references or {}).items() if reference != first}
-    parts += [variant(name, scene, path.stem, own.get(name)) for name, scene in scenes.items()]
+    for name, scene in scenes.items():
+        parts.append(variant(name, scene, path.stem, own.get(name)))
+        if drive := (drives or {}).get(name):
+            parts.append(table(f"variants.{_key(name)}.drive", drive))
     parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
     parts += [table(f"sizing.{_key(name)}", raw) for name, raw in (sizing or {}).items()]
     for file, text in tables(path, scenes).items():

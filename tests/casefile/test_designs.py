@@ -37,6 +37,7 @@ def test_found_designs_record_their_origin(tmp_path):
     found = {name: item.find() for name, item in case.designs.items()}
     again = ks.load_case(write_found(tmp_path / "again.toml", case, found))
     assert list(again.variants) == ["plain", "cam-circle", "stiffer", "trade-1", "trade-2"]
+    assert {str(item.motor) for item in again.variants.values()} == {str(case.variants["plain"].motor)}
     for name, scene in (("stiffer", found["stiffer"].scene), ("trade-2", found["trade"].designs[1].scene)):
         torque = again.solve(name, 24).balancing_torque
         np.testing.assert_array_equal(torque, scene.solve(24).balancing_torque)

@@ -110,6 +110,7 @@ def test_tables_of_found_designs_replace_no_file(tmp_path, capsys):
     }
     assert ks.load_case(found).variant("stiffer").parameters["coupler_length"] == pytest.approx(2.1)
     found.unlink()
+    (tmp_path / "found_cut_cam.csv").write_text("angle [rad], radius [m]\n0.0, 0.3\n", encoding="utf-8")
     capsys.readouterr()
     assert main(["design", str(saw), "--out", str(found)]) == 2
     told = capsys.readouterr().err

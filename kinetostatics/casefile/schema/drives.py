@@ -5,7 +5,7 @@ Their types have no SI unit, so designs do not vary them: a variant is solved at
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from ...drive.motor import Motor
 from .tables import Table, must_describe, one_of
@@ -113,3 +113,17 @@ class DriveTable(Table):
     """The motor."""
     flywheel: MomentOfInertia = 0.0
     """Moment of inertia on the crank, in addition to its link."""
+    _raw: dict = PrivateAttr(default_factory=dict)
+
+    @property
+    def raw(self):
+        """The table as the file has it."""
+        return self._raw
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _keep_raw(cls, raw, validated):
+        found = validated(raw)
+        if isinstance(raw, dict):
+            found._raw = raw
+        return found

@@ -61,20 +61,15 @@ def save(session, request):
     scenes = scenes_of(session, state)
     sizing = {name: part.raw for name, part in session.case.sizing.items()} if session.case else {}
     comment = f"Saved by: kinetostatics explore {session.case.path.name}" if session.case else ""
-    write_case(path, session.title, scenes, session.source, comment=comment, sizing=sizing)
+    drives, notes = {}, []
+    if session.case:
+        sources = [*list(scenes)[:-1], state.get("variant", session.first)]
+        variants = [session.case.variants[name] for name in sources]
+        drives = {name: item.raw_drive for name, item in zip(scenes, variants, strict=True)}
+        notes = [f"The tolerances of {session.case.path.name} are not in it."] if session.case.tolerances else []
+    write_case(path, session.title, scenes, session.source, comment=comment, drives=drives, sizing=sizing)
     session.saved = state, str(path.absolute()), list(scenes)[-1]
-    return {"saved": path.name, "path": str(path.absolute()), "notes": _left_out(session, list(scenes))}
-
-
-def _left_out(session, names):
-    """Sentences on what the case has and the saved file has not."""
-    case = session.case
-    parts = {
-        "drive": case is not None and any(item.motor for name, item in case.variants.items() if name in names),
-        "tolerances": case is not None and bool(case.tolerances),
-    }
-    left = " and ".join(name for name, has in parts.items() if has)
-    return [f"The {left} of {case.path.name} are not in it; copy their tables."] if left else []
+    return {"saved": path.name, "path": str(path.absolute()), "notes": notes}
 
 
 def python(session, request):

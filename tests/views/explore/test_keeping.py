@@ -44,6 +44,25 @@ def test_a_saved_case_has_the_same_numbers_and_its_reference(tmp_path):
     assert_same_bits(case.variants["cam-circle"].scene, session.scene(HEAVIER))
     assert_same_bits(case.variants["plain"].scene, CASE.variants["plain"].scene)
     assert case.compare("plain", "cam-circle").mean_torque_ratio > 1
+    assert found["notes"] == ["The tolerances of sawframe_2r63.toml are not in it."]
+
+
+def test_a_saved_case_has_its_drives_and_their_files(tmp_path):
+    text = CASE.path.read_text(encoding="utf-8")
+    rows = "speed [rad/s], torque [N m]\n0, 800\n150, 900\n170, 0\n"
+    (tmp_path / "from").mkdir()
+    (tmp_path / "to").mkdir()
+    (tmp_path / "from" / "motor.csv").write_text(rows, encoding="utf-8")
+    start, end = text.index("[common.drive.motor]"), text.index("[variants.plain]")
+    own = '[common.drive.motor]\nkind = "table"\nfile = "motor.csv"\ntransmission = 2.5\n\n'
+    path = tmp_path / "from" / "saw.toml"
+    path.write_text(text[:start] + own + text[end:], encoding="utf-8")
+    for what in (CASE, ks.load_case(path)):
+        found = kept(what, tmp_path / "to", name="heavier", overwrite=True)
+        for name, variant in ks.load_case(found["path"]).variants.items():
+            assert variant.flywheel == what.variants[name].flywheel > 0
+            speed = np.linspace(0.0, 160.0, 9)
+            np.testing.assert_array_equal(variant.motor.torque(speed), what.variants[name].motor.torque(speed))
 
 
 STATES = {
