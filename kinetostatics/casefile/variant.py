@@ -80,7 +80,7 @@ class Variant:
 
     @property
     def raw_drive(self):
-        """Table of its drive as the file has it, with the path of a motor's file from anywhere; None without a drive."""
+        """Table of its drive as in the file, with the whole path of a motor's file; None without a drive."""
         if self.table.drive is None:
             return None
         motor = self.table.drive.raw["motor"]

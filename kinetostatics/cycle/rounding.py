@@ -9,7 +9,7 @@ import numpy as np
 from ..engines.engines import NUMPY
 from ..engines.error_bounds import of_magnitude
 from ..errors import NotGivenError
-from ..mechanics.quantities import largest_term, of_scene, unit_of
+from ..mechanics.quantities import largest_term, largest_term_in, of_scene, unit_of
 from ..numbers.formatting import number
 from ..numbers.lazy import cached_property
 
@@ -128,3 +128,14 @@ def extremes_text(extremes):
 def zeroed(values, floor):
     """Values, 0 where their size is at most `floor`."""
     return np.where(np.abs(values) <= floor, 0.0, values)
+
+
+def curve_values(solution, quantity, turn=None):
+    """Values of a `Quantity` over the crank angles, (1 or 2, N), SI; those within rounding in the `turn` are 0.
+
+    `turn` is a solution over the period, by default the same one.
+    """
+    floor = FLOOR * float(np.max(largest_term_in(solution if turn is None else turn, quantity.unit)))
+    found = quantity.read(solution)
+    parts = found if quantity.vector else (found,)
+    return zeroed(np.stack([np.broadcast_to(part, solution.crank_angle.shape) for part in parts]), floor)

@@ -34,8 +34,9 @@ def write_case(
 ) -> Path:
     """Write a case file of scenes by the names of their variants; `references` is by default the first one.
 
-    A comment precedes them. Drives by variant, designs and parts by name are tables as another case file has them. Raises `ParameterError` for
-    objects without a text in case files, `FileError` if a file cannot be written or a table's file has another text.
+    A comment precedes them. Drives by variant, designs and parts by name are tables as another case file has them.
+    Raises `ParameterError` for objects without a text in case files, `FileError` if a file cannot be written or a
+    table's file has another text.
     """
     path = Path(path)
     parts = [f"# {line}" for line in comment.splitlines()]

@@ -125,7 +125,7 @@ def test_a_case_saved_by_the_page_has_the_numbers_that_it_shows(explored, tmp_pa
         page.driver.find_element(By.XPATH, f"//div[contains(@class, 'keep')]//button[.='{text}']").click()
 
     def told(text):
-        page.wait(lambda: text in page.find(".keep .told").text)
+        page.wait(lambda: text in page.find(".keep .message").text)
 
     press("Save case")
     told("Saved as sawframe_2r63_changed.toml")

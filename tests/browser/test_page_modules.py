@@ -392,7 +392,7 @@ def test_a_pose_that_cannot_be_assembled_is_not_drawn(drawing):
 
 def test_clock_turns_by_keys_and_controls(page):
     run = page.execute_script
-    run("""window.clock = new Clock(document.body, {count: 240, step: 3, way: -1});
+    run("""window.clock = new Clock(document.body, {count: 240, step: 3, sense: -1});
         window.heard = [];
         clock.follow((index) => heard.push(index));
         clock.keys(document.body)""")
@@ -401,7 +401,7 @@ def test_clock_turns_by_keys_and_controls(page):
     assert run("const it = document.querySelector('.angle'); return [it.max, it.value]") == ["717", "696"]
     run("[Infinity, -Infinity, NaN].forEach((index) => clock.choose(index))")
     assert run("return clock.index") == 232
-    run("clock.span({count: 120, step: 3, way: 1})")
+    run("clock.span({count: 120, step: 3, sense: 1})")
     assert run("return clock.index") == 112
     page.find_element(By.CLASS_NAME, "play").click()
     page.execute_async_script("setTimeout(arguments[0], 300)")

@@ -184,7 +184,7 @@ def edited(raw, action):
         return _removed(chain, found, at, bool(action.get("attached")))
     part = owner[key]
     kind = texts.get("cam.kind")
-    if kind in proposals.CAMS and kind != part["cam"]["kind"]:
+    if "cam" in part and isinstance(kind, str) and kind in proposals.CAMS and kind != part["cam"]["kind"]:
         part["cam"] = proposals.cam_of_kind(kind, getattr(MADE_OF[model], "LAW", ("", "m"))[1])
         texts = {key: text for key, text in texts.items() if not key.startswith("cam.")}
     owner[key] = with_texts(model, part, texts)
@@ -299,8 +299,8 @@ def _with_attached(chain, at):
             if other not in gone and names & _references(getattr(chain.table, other[0])[other[1]])
         ]
     kept = {pair for number, group in enumerate(groups) if ("groups", number) not in gone for pair in group.pairs}
-    rubbing = [joint for joint in chain.table.friction if joint not in kept and joint != "O"]
-    return [gone[0], *sorted(gone[1:]), *(("friction", joint) for joint in rubbing)]
+    lost = [joint for joint in chain.table.friction if joint not in kept and joint != "O"]
+    return [gone[0], *sorted(gone[1:]), *(("friction", joint) for joint in lost)]
 
 
 def _references(part):

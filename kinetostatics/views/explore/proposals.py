@@ -13,13 +13,13 @@ from ...machine.group import FRAME
 from .forms import SEGMENTS
 
 ANGLES = 72
-"""Crank angles at which the way of a joint is computed."""
+"""Crank angles at which the path of a joint is computed."""
 MM_DECIMALS = 6
 """Decimals of proposed lengths in mm."""
 MIN_CHANGE = 1e-6
 """Least change of the distance of two joints for a dyad, over the distance."""
 SCALE = 0.1
-"""Radius of the way of a joint, m, where there is none: of a crank without a length."""
+"""Radius of the path of a joint, m, where there is none: of a crank without a length."""
 MASS = {"mass": "1 kg"}
 BODY = {"mass": "1 kg", "inertia": "0.01 kg m^2"}
 """Of the last link of a group, so that forces flow; of one that turns."""
@@ -37,11 +37,11 @@ FRICTION = {"mu": 0.1, "radius": "20 mm", "pin_radius": "15 mm", "roller_radius"
 
 def proposed_group(kind, mechanism):
     """Keys of a group of a kind attached to a mechanism, without a label."""
-    way = Way(mechanism)
-    (x, y), r = way.centre, way.radius
-    pin, pivot = {"pin": way.free_name("B")}, {"pivot_name": way.free_pivot}
-    on = {"on": way.joint}
-    turned = 90 * sum(way.joint in group.hangs_on for group in mechanism.groups if group.guides)
+    layout = Layout(mechanism)
+    (x, y), r = layout.centre, layout.radius
+    pin, pivot = {"pin": layout.free_name("B")}, {"pivot_name": layout.free_pivot}
+    on = {"on": layout.joint}
+    turned = 90 * sum(layout.joint in group.hangs_on for group in mechanism.groups if group.guides)
     offset = y * np.cos(np.radians(turned)) - x * np.sin(np.radians(turned))
     level = {"guide_angle": f"{turned % 360} deg", "guide_offset": _mm(offset)}
     match kind:
@@ -59,7 +59,7 @@ def proposed_group(kind, mechanism):
         case "planetary crank":
             return {"radius": _mm(r), **pin, "planet": MASS}
         case "dyad":
-            first, second, apart = way.two_joints
+            first, second, apart = layout.two_joints
             return {
                 "length1": _mm(0.75 * apart),
                 "length2": _mm(0.75 * apart),
@@ -68,8 +68,8 @@ def proposed_group(kind, mechanism):
                 "dyad2": MASS,
             }
         case "pin":
-            link, length = way.bar
-            return {"on": link, "at": [_mm(length), "0 mm"], "name": way.free_name("C")}
+            link, length = layout.bar
+            return {"on": link, "at": [_mm(length), "0 mm"], "name": layout.free_name("C")}
         case "cam roller":
             return {"cam": {"kind": "circle", **CAMS["circle"]}, "block": MASS}
         case "swinging follower":
@@ -78,21 +78,21 @@ def proposed_group(kind, mechanism):
                 "arm_length": _mm(2 * r),
                 "pivot": _point(3 * r, 0.0),
                 "cam": law,
-                "pin": way.free_name("R"),
+                "pin": layout.free_name("R"),
                 **pivot,
                 "arm": BODY,
             }
     law = {"kind": "cosine", **CAMS["cosine"]}
-    return {"cam": law, "guide_angle": "90 deg", "pin": way.free_name("R"), "follower": MASS}
+    return {"cam": law, "guide_angle": "90 deg", "pin": layout.free_name("R"), "follower": MASS}
 
 
 def proposed_load(kind, mechanism):
     """Keys of a load of a kind on a mechanism."""
-    way = Way(mechanism)
-    slider, swinging = way.slider, way.swinging_link
-    position = way.middle_of(slider) if slider else 0.0
+    layout = Layout(mechanism)
+    slider, swinging = layout.slider, layout.swinging_link
+    position = layout.middle_of(slider) if slider else 0.0
     on = {"on": slider} if slider else {}
-    x, y = way.centre
+    x, y = layout.centre
     match kind:
         case "gravity":
             return {"direction": "-90 deg"}
@@ -106,21 +106,21 @@ def proposed_load(kind, mechanism):
         case "mowing":
             return {"force": "600 N", "pitch": "76.2 mm", "start": "26 mm", "end": "60 mm", **on}
         case "gas spring":
-            volume = f"{1e3 * 1e-3 * 8 * way.radius:.4g} l"
+            volume = f"{1e3 * 1e-3 * 8 * layout.radius:.4g} l"
             return {"area": "10 cm^2", "volume": volume, "pressure": "2 bar", "at": _mm(position), **on}
         case "force":
-            return {"value": "100 N", "at": way.joint, "direction": "-90 deg"}
+            return {"value": "100 N", "at": layout.joint, "direction": "-90 deg"}
         case "balance shaft":
             return {"unbalance": "0.1 kg m"}
         case "torque":
             return {"value": "-20 N m", "on": swinging}
         case "torsion spring":
-            return {"stiffness": "10 N m/rad", "free_angle": f"{way.middle_angle(swinging):.4g} deg", "on": swinging}
+            return {"stiffness": "10 N m/rad", "free_angle": f"{layout.middle_angle(swinging):.4g} deg", "on": swinging}
         case "torsion damper":
             return {"coefficient": "0.1 N m s", "on": swinging}
     first = {"point force": "value", "point spring": "stiffness", "point damper": "coefficient"}[kind]
     number = {"value": "100 N", "stiffness": "1 kN/m", "coefficient": "100 N s/m"}[first]
-    return {first: number, "between": [way.joint, _point(x, y + 4 * way.radius)]}
+    return {first: number, "between": [layout.joint, _point(x, y + 4 * layout.radius)]}
 
 
 def proposed_friction(joint, mechanism):
@@ -140,7 +140,7 @@ def cam_of_kind(kind, unit):
     return json.loads(text.replace(" mm", " deg") if unit == "rad" else text)
 
 
-class Way:
+class Layout:
     """Joints and links of a mechanism over its period, and free names."""
 
     def __init__(self, mechanism):
@@ -167,7 +167,7 @@ class Way:
 
     @property
     def centre(self):
-        """Centre of the way of this joint, m."""
+        """Centre of the path of this joint, m."""
         if self.joint not in self.mechanism.joints:
             return 0.0, 0.0
         return tuple(map(_middle, self.position(self.joint)))

@@ -30,6 +30,8 @@ COLLECTION_THRESHOLDS = 700, 10, 10
 """For garbage collection: a server makes machines as long as it runs, and solutions refer to each other in circles."""
 ADDRESS = "127.0.0.1"
 """The only address at which the server listens."""
+HTTP_PORT = 80
+"""Browsers leave this port out of a host."""
 MAX_MESSAGE = 1_000_000
 """Largest message from a page, bytes."""
 TOKEN_BYTES = 24
@@ -229,11 +231,12 @@ def listening(session_of_page, port=0):
         ) from None
     number = sockets[0].getsockname()[1]
     gate = Gate()
-    site = Site(gate, session_of_page, {f"{ADDRESS}:{number}", f"localhost:{number}"})
+    ending = "" if number == HTTP_PORT else f":{number}"
+    site = Site(gate, session_of_page, {f"{ADDRESS}{ending}", f"localhost{ending}"})
     server = HTTPServer(application(site), max_body_size=MAX_MESSAGE)
     server.add_sockets(sockets)
     try:
-        yield f"http://{ADDRESS}:{number}/", gate
+        yield f"http://{ADDRESS}{ending}/", gate
     finally:
         server.stop()
         for page in list(site.pages):

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from ...casefile.case import Case, load_case
-from ...cycle.rounding import FLOOR, zeroed
+from ...cycle.rounding import curve_values
 from ...errors import AssemblyError, KinetostaticsError, ParameterError
-from ...mechanics.quantities import largest_term_in, of_scene
+from ...mechanics.quantities import of_scene
 from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
@@ -272,7 +272,7 @@ def look(session, request):
         "drawing": drawing_of(solution),
         "angle": np.degrees(solution.crank_angle),
         "period": float(np.degrees(scene.period)),
-        "way": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
+        "sense": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
         **handle_data(solution, scene.places),
     }
@@ -303,10 +303,7 @@ def drag(session, request):
 
 def curve(solution, known):
     """Values of a quantity over the angles of a solution, (parts, N), SI, with the unit in which to show them."""
-    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term_in(solution, known.unit)))
-    parts = known.read(solution)
-    values = np.stack([np.broadcast_to(part, shape) for part in (parts if known.vector else (parts,))])
-    values = zeroed(values, rounding)
+    values = curve_values(solution, known)
     size = np.hypot(*values) if known.vector else values
     most = ordinary_size([size])
     factor, unit = unit_for(known.unit, most)

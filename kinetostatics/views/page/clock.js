@@ -4,20 +4,20 @@ const STEPS = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1, PageUp:
 
 export class Clock {
   // Controls under the root, each optional: .play (button), .angle (range), .degrees (number), .pace (seconds a turn).
-  constructor(root, { count = 360, step = 1, way = 1 } = {}) {
+  constructor(root, { count = 360, step = 1, sense = 1 } = {}) {
     const find = (name) => root.querySelector(name);
     const [play, slider, number, pace] = [".play", ".angle", ".degrees", ".pace"].map(find);
     Object.assign(this, { play, slider, number, pace, running: false, index: 0, place: 0, followers: [] });
-    this.span({ count, step, way });
+    this.span({ count, step, sense });
     for (const input of [slider, number]) {
       if (input) input.addEventListener("input", () => input.value !== "" && this.choose(input.value / this.step));
     }
     if (play) play.addEventListener("click", () => this.run(!this.running));
   }
 
-  // `count` angles in steps of `step` degrees; the crank plays in the sense `way`, 1 or -1.
-  span({ count, step, way }) {
-    Object.assign(this, { count, step, way });
+  // `count` angles in steps of `step` degrees; the crank plays in a `sense`, 1 or -1.
+  span({ count, step, sense }) {
+    Object.assign(this, { count, step, sense });
     for (const input of [this.slider, this.number]) if (input) Object.assign(input, { max: (count - 1) * step, step });
     const { index } = this;
     this.index = -1;
@@ -65,7 +65,7 @@ export class Clock {
     const past = Math.max(0, Math.min(0.1, (time - this.before) / 1000));
     const turn = this.pace ? Number(this.pace.value) : SECONDS;
     this.before = time;
-    this.place += this.way * past * 360 / this.step / turn;
+    this.place += this.sense * past * 360 / this.step / turn;
     this.turnTo(Math.floor(this.place));
     requestAnimationFrame((next) => this.frame(next));
   }

@@ -73,9 +73,9 @@ export class Requests {
       if (next) this.look(...next);
       this.onlook(answer, asked);
     } else if (this.waiting.has(answer.id)) {
-      const told = this.waiting.get(answer.id);
+      const onanswer = this.waiting.get(answer.id);
       if (!answer.more) this.waiting.delete(answer.id);
-      told(answer);
+      onanswer(answer);
     }
   }
 }

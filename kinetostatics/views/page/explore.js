@@ -17,7 +17,7 @@ import { Requests } from "./connection.js";
 import { Curves } from "./curves.js";
 import { Handles } from "./handles.js";
 import { Groups } from "./groups.js";
-import { History, parsed } from "./history.js";
+import { History, keyOf, parsed } from "./history.js";
 import { button, checkbox, made } from "./html.js";
 import { Keep } from "./keep.js";
 import { Mechanism } from "./mechanism.js";
@@ -28,9 +28,6 @@ const FIRST_CURVES = 3;
 const REST = 150; // ms without a change, until the motor's speed is asked for
 const REMEMBER = 300; // ms between a change and its place in the address
 const LONG_NOTE = 90; // characters of a note that stands open
-
-// What is compared with another state: without the order of its values.
-const keyOf = ({ values, ...others }) => JSON.stringify([others, Object.entries(values ?? {}).sort()]);
 
 export class Explore {
   // `transport` sends requests; `address` keeps what is shown, {read(), write(fields)}, all texts.
@@ -55,7 +52,7 @@ export class Explore {
 
   oncompared(listener) { this.listeners.compared.push(listener); }
 
-  tell(kind, item) { this.listeners[kind].forEach((listener) => listener(item)); }
+  notify(kind, item) { this.listeners[kind].forEach((listener) => listener(item)); }
 
   get state() { return this.history?.now; }
 
@@ -195,7 +192,7 @@ export class Explore {
     const { state } = this, structure = keyOf({ ...state, values: {} });
     this.kept.set(state.variant, state);
     this.remember();
-    this.tell("changed", state);
+    this.notify("changed", state);
     this.asked = structure;
     if (structure === this.described) this.look(); else this.describe(structure);
   }
@@ -214,7 +211,7 @@ export class Explore {
         tab.setAttribute("aria-selected", chosen);
         tab.tabIndex = chosen ? 0 : -1;
       }
-      this.tell("known", answer);
+      this.notify("known", answer);
       this.look();
       this.askReference();
     });
@@ -244,7 +241,7 @@ export class Explore {
     this.forgetReference = this.requests.ask("look", { state, show: this.names, count: COUNT }, (answer) => {
       this.reference = answer.problem ? null : { ...answer, label };
       this.redraw();
-      this.tell("compared", answer);
+      this.notify("compared", answer);
     });
   }
 
@@ -278,7 +275,7 @@ export class Explore {
     this.redraw();
     if (first) this.clock.choose(this.at / this.clock.step);
     this.root.dataset.shown = answer.id;
-    this.tell("shown", answer);
+    this.notify("shown", answer);
   }
 
   // Take the state of a drag. Whether the answer is to be shown: not if another state was chosen meanwhile, nor if
@@ -290,7 +287,7 @@ export class Explore {
     this.record(state, still);
     this.kept.set(state.variant, state);
     this.remember();
-    this.tell("changed", state);
+    this.notify("changed", state);
     if (impossible && !still) this.look();
     return still || !impossible;
   }
@@ -304,14 +301,14 @@ export class Explore {
     this.curves.stale();
     if (this.known) this.showFields(this.state);
     this.root.dataset.shown = answer.id;
-    this.tell("shown", answer);
+    this.notify("shown", answer);
   }
 
   showFields(state) {
     const own = Object.fromEntries(this.known.parameters.map(({ path, value }) => [path, value]));
     const values = { ...own, ...state.values };
     this.parameters.show(values);
-    this.handles.tellValues(values);
+    this.handles.setValues(values);
   }
 
   redraw() {

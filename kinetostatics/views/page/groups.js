@@ -1,4 +1,5 @@
 // Groups, loads and friction of a chain that is built on the page: a list with a form for each part, Add and Remove.
+import { keyOf } from "./history.js";
 import { button, made } from "./html.js";
 
 const LISTS = { groups: "Group", loads: "Load", gravity: "Load", friction: "Friction at" };
@@ -38,7 +39,7 @@ export class Groups {
   show(state) {
     this.state = state;
     this.explore.requests.ask("groups", { state }, (answer) => {
-      if (answer.problem || JSON.stringify(answer.state) !== JSON.stringify(this.state)) return;
+      if (answer.problem || keyOf(answer.state) !== keyOf(this.state)) return;
       this.offer(answer.kinds);
       this.fill(answer.parts);
       this.shown = state;
@@ -156,7 +157,7 @@ class Part {
     this.clear();
     if (!changed.length) return;
     const keys = Object.fromEntries(changed.map(([key, { input }]) => [key, input.value]));
-    this.groups.act({ do: "change", at: this.at, keys }, this.fault, ({ faults }) => this.tell(faults));
+    this.groups.act({ do: "change", at: this.at, keys }, this.fault, ({ faults }) => this.mark(faults));
   }
 
   clear() {
@@ -168,7 +169,7 @@ class Part {
   }
 
   // Show faults beside the fields that they name, others below the form.
-  tell(faults) {
+  mark(faults) {
     const left = [];
     for (const { key, text } of faults ?? []) {
       const place = this.inputs.get(key) ?? this.inputs.get(key.slice(0, key.lastIndexOf(".")));

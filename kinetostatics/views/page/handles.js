@@ -46,9 +46,9 @@ export class Handles {
   }
 
   // Other values beside the points, where no machine can be shown.
-  tellValues(values) {
+  setValues(values) {
     this.values = values;
-    if (this.told) this.tell(this.told);
+    if (this.tipped) this.showTip(this.tipped);
   }
 
   grip({ name, label, kind }) {
@@ -63,15 +63,15 @@ export class Handles {
     on("pointerdown", (event) => this.grab(grip, event));
     on("keydown", (event) => this.nudge(grip, event));
     on("keyup blur", () => this.held?.grip === grip && this.held.keys && this.drop());
-    on("pointerenter focus", () => { if (!this.held) this.tell(grip); });
-    on("pointerleave blur", () => { if (!this.held) this.tell(null); });
+    on("pointerenter focus", () => { if (!this.held) this.showTip(grip); });
+    on("pointerleave blur", () => { if (!this.held) this.showTip(null); });
     return grip;
   }
 
   show(index) {
     this.index = index;
     for (const grip of this.grips.values()) this.place(grip);
-    if (this.told) this.tell(this.told);
+    if (this.tipped) this.showTip(this.tipped);
     if (this.held) this.aim();
   }
 
@@ -89,11 +89,11 @@ export class Handles {
   }
 
   // Name and values beside a grip, or null.
-  tell(grip) {
+  showTip(grip) {
     const { tip, drawing } = this;
-    this.told = this.grips.has(grip?.name) ? grip : null;
-    tip.setAttribute("visibility", this.told ? "visible" : "hidden");
-    if (!this.told) return;
+    this.tipped = this.grips.has(grip?.name) ? grip : null;
+    tip.setAttribute("visibility", this.tipped ? "visible" : "hidden");
+    if (!this.tipped) return;
     const lines = [grip.item.label, ...grip.item.paths.map((path) => this.value(path))];
     grip.group.setAttribute("aria-label", lines.join(", "));
     const toLeft = grip.left > 0.6 * drawing.width, x = short(grip.left + (toLeft ? -TIP_ASIDE : TIP_ASIDE));
@@ -143,7 +143,7 @@ export class Handles {
   move(x, y, snap) {
     Object.assign(this.held, { x, y, snap });
     this.aim();
-    this.tell(this.held.grip);
+    this.showTip(this.held.grip);
     this.asked ??= requestAnimationFrame(() => {
       this.asked = null;
       this.ondrag(this.wanted);

@@ -1,6 +1,9 @@
 // States that were shown: undo, redo, and the fields of an address that reopen one.
 const MOST_STATES = 1000; // that can be undone
 
+// Equal for equal states, in whatever order their values come.
+export const keyOf = ({ values, ...others }) => JSON.stringify([others, Object.entries(values ?? {}).sort()]);
+
 export class History {
   constructor(first) { Object.assign(this, { states: [first], place: 0 }); }
 
@@ -13,7 +16,7 @@ export class History {
   // Keep a state after the present one; with `still`, in place of the present one (a movement that goes on). Whether it
   // differs from the present one.
   keep(state, still = false) {
-    if (JSON.stringify(state) === JSON.stringify(this.now)) return false;
+    if (keyOf(state) === keyOf(this.now)) return false;
     this.states.length = this.place + 1;
     if (still) this.states[this.place] = state; else this.states.push(state);
     if (this.states.length > MOST_STATES) this.states.shift();

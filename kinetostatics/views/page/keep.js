@@ -13,9 +13,9 @@ export class Keep {
     button(element, "Copy Python", () => this.copy(), { title: "Python text that builds this machine" });
     button(element, "Report", () => this.write("report"), { title: "one page with figures and tables" });
     this.overwrite = button(element, "Replace it", () => this.confirmed());
-    this.told = made(element, "span", { class: "told", role: "status" });
+    this.message = made(element, "span", { class: "message", role: "status" });
     this.text = made(element, "textarea", { readonly: "", rows: 8, spellcheck: "false", "aria-label": "Python text", hidden: "" });
-    this.text.addEventListener("keydown", ({ key }) => { if (key === "Escape") this.tell(); });
+    this.text.addEventListener("keydown", ({ key }) => { if (key === "Escape") this.say(); });
     this.ask(null);
   }
 
@@ -25,24 +25,24 @@ export class Keep {
     this.overwrite.hidden = confirmed === null;
   }
 
-  tell(...parts) {
+  say(...parts) {
     this.ask(null);
     this.text.hidden = true;
-    this.told.replaceChildren(...parts);
+    this.message.replaceChildren(...parts);
   }
 
   // Write a file, "save" or "report", of this state and name; an existing one after a confirmation.
   write(kind, fields = { ...this.shown, name: this.name.value }) {
-    this.tell(kind === "report" ? "The report is being written …" : "");
+    this.say(kind === "report" ? "The report is being written …" : "");
     this.requests.ask(kind, fields, (answer) => {
       if (answer.problem) {
-        this.tell(answer.problem);
+        this.say(answer.problem);
       } else if (answer.exists) {
-        this.tell(`${answer.exists} exists already.`);
+        this.say(`${answer.exists} exists already.`);
         this.ask(() => this.write(kind, { ...fields, overwrite: true }));
       } else if (answer.saved) {
-        this.tell([`Saved as ${answer.saved}.`, ...answer.notes ?? [], ""].join(" "));
-        if (answer.link) made(this.told, "a", { href: answer.link, target: "_blank", rel: "noopener" }, "Open it");
+        this.say([`Saved as ${answer.saved}.`, ...answer.notes ?? [], ""].join(" "));
+        if (answer.link) made(this.message, "a", { href: answer.link, target: "_blank", rel: "noopener" }, "Open it");
       }
     });
   }
@@ -53,12 +53,12 @@ export class Keep {
   // Show the Python text, chosen, and copy it where the browser allows it.
   copy() {
     this.requests.ask("python", this.shown, (answer) => {
-      this.tell(answer.problem ?? "");
+      this.say(answer.problem ?? "");
       if (answer.problem) return;
       Object.assign(this.text, { value: answer.text, hidden: false });
       this.text.select();
       const copied = navigator.clipboard ? navigator.clipboard.writeText(answer.text) : Promise.reject(new Error());
-      copied.then(() => { this.told.textContent = "Copied."; }, () => { this.told.textContent = "Copy the chosen text."; });
+      copied.then(() => { this.message.textContent = "Copied."; }, () => { this.message.textContent = "Copy the chosen text."; });
     });
   }
 }

@@ -75,9 +75,9 @@ export class Mechanism {
   show(shown, reference, still) {
     const first = !this.shown;
     Object.assign(this, { shown, reference });
-    const { angle, period, way } = shown, data = shown.drawing, { length } = angle;
-    if (this.clock.count !== length || this.clock.step !== period / length || this.clock.way !== way) {
-      this.clock.span({ count: length, step: period / length, way });
+    const { angle, period, sense } = shown, data = shown.drawing, { length } = angle;
+    if (this.clock.count !== length || this.clock.step !== period / length || this.clock.sense !== sense) {
+      this.clock.span({ count: length, step: period / length, sense });
     }
     if (!this.frame || (!still && !fits(data, this.frame))) {
       this.frame = reference ? { ...data, box: union(data.box, reference.drawing.box) } : data;

@@ -15,7 +15,7 @@ class Report {
     const all = (selector) => [...root.querySelectorAll(selector)];
     const json = (name) => JSON.parse(root.querySelector(`script.${name}`).textContent);
     this.data = restored(json("data"), fromBase64(json("arrays")));
-    const { counts, step, way, start } = this.data;
+    const { counts, step, sense, start } = this.data;
     Object.assign(this, { root, all, hidden: new Set(), period: Math.max(...counts) * step });
     for (const item of Object.values(this.data.quantities)) {
       item.parts = item.values.map((values, row) => values && parted(values, counts[row]));
@@ -25,7 +25,7 @@ class Report {
     this.drawings = all(".panel svg").map((svg, row) => this.drawing(svg, row));
     this.charts = Object.fromEntries(all("[data-figure]").map((place) => [place.dataset.figure, this.chart(place)]));
     this.choices();
-    this.clock = new Clock(root, { count: Math.max(...counts), step, way });
+    this.clock = new Clock(root, { count: Math.max(...counts), step, sense });
     this.clock.turnTo(start);
     this.clock.follow((index) => this.show(index));
     this.clock.keys(root);
@@ -119,8 +119,8 @@ class Report {
     const index = chosen % this.data.counts[row];
     if (!parts) return "";
     if (!vector) return shown(parts[0][index], decimals);
-    const [x, y] = parts.map((part) => part[index]), size = Math.hypot(x, y), way = Math.atan2(y, x) * 180 / Math.PI;
-    return shown(size, decimals) + (size > 0 && Number.isFinite(size) ? ` ∠ ${shown(way, 1)}°` : "");
+    const [x, y] = parts.map((part) => part[index]), size = Math.hypot(x, y), direction = Math.atan2(y, x) * 180 / Math.PI;
+    return shown(size, decimals) + (size > 0 && Number.isFinite(size) ? ` ∠ ${shown(direction, 1)}°` : "");
   }
 
   show(index) {

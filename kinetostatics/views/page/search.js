@@ -63,7 +63,7 @@ export class Search {
     const { shown, reference, requests } = this.explore;
     if (!shown) { this.progress.textContent = "A machine that cannot be assembled has no numbers."; return; }
     const machine = { state: shown.state, reference: reference ? reference.state : null };
-    this.stop = requests.ask("optimise", { ...machine, ...goal, vary, limits }, (answer) => this.told(answer, shown));
+    this.stop = requests.ask("optimise", { ...machine, ...goal, vary, limits }, (answer) => this.receive(answer, shown));
     this.result.replaceChildren();
     this.progress.textContent = "The search starts …";
     this.starter.disabled = true;
@@ -79,7 +79,7 @@ export class Search {
   }
 
   // `searched`: the answer to a look of the machine from which the search started.
-  told(answer, searched) {
+  receive(answer, searched) {
     const { step, goal, unit, best, kept } = answer;
     if (step) {
       const numbers = Object.entries(best).map(([path, value]) => `${this.named(path)} ${this.text(path, value)}`);

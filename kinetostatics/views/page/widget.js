@@ -1,6 +1,7 @@
 // The explore page in a notebook: the widget's model carries requests and answers, and keeps the state.
 import { fromBuffers, restored } from "./arrays.js";
 import { Explore } from "./explore.js";
+import { keyOf } from "./history.js";
 
 // The model as a transport of one of the pages that show it.
 class Kernel {
@@ -40,7 +41,7 @@ function render({ model, el }) {
   const explore = new Explore(root, kernel, address);
   const follow = () => {
     const state = model.get("state");
-    if (explore.history && JSON.stringify(state) !== JSON.stringify(explore.history.now)) explore.change(state);
+    if (explore.history && keyOf(state) !== keyOf(explore.history.now)) explore.change(state);
   };
   model.on("change:state", follow);
   return () => {

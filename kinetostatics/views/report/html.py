@@ -170,7 +170,7 @@ def _turning(subject):
         "counts": [machine.solution.crank_angle.size for machine in machines],
         "between": [np.degrees(machine.between.crank_angle) for machine in machines],
         "start": int(np.nanargmax(torque)) if np.isfinite(torque).any() else 0,
-        "way": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
+        "sense": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
     }
 
 

@@ -17,9 +17,9 @@ from ...cycle.comparison import Comparison, Row, left_out
 from ...cycle.load_functions import resolution_note
 from ...cycle.losses import lose
 from ...cycle.means import mean_absolute_torque
-from ...cycle.rounding import FLOOR, zeroed
+from ...cycle.rounding import curve_values
 from ...errors import KinetostaticsError, NotGivenError, ParameterError
-from ...mechanics.quantities import components, largest_term, of_scene, unit_of
+from ...mechanics.quantities import of_scene, unit_of
 from ...numbers import checks, formatting
 from ...numbers.formatting import DIGITS, angle, digits_of, heading, parse_heading, pretty_unit, round_bound_up
 from ...numbers.output_units import shown_units
@@ -191,8 +191,7 @@ def _values(machine, solution, name):
     """Values over the angles of a solution, (1 or 2, N), or None if the machine lacks the quantity."""
     if name not in of_scene(solution) or _is_still(machine.solution, of_scene(solution)[name]):
         return None
-    shape, rounding = solution.crank_angle.shape, FLOOR * float(np.max(largest_term(machine.solution, name)))
-    return zeroed(np.stack([np.broadcast_to(part, shape) for part in components(solution, name)]), rounding)
+    return curve_values(solution, of_scene(solution)[name], machine.solution)
 
 
 def decimals(largest):

@@ -246,6 +246,8 @@ FAULTS = [
     ({"do": "change", "at": "groups", "keys": {}}, "at must be a list"),
     ({"do": "change", "at": ["groups", 0], "keys": [1]}, "keys must be a"),
     ({"do": "change", "at": ["groups", 0], "keys": {"on": 7}}, "on must be a text"),
+    ({"do": "change", "at": ["groups", 0], "keys": {"cam.kind": "circle"}}, "key is 'cam.kind', allowed: "),
+    ({"do": "change", "at": ["groups", 0], "keys": {"cam.kind": ["circle"]}}, "key is 'cam.kind', allowed: "),
     ({"do": "burn", "at": []}, "do is 'burn', allowed: 'add', 'change', 'remove'"),
     ({"do": "add", "at": ["groups"], "kind": "<b>"}, "kind is '<b>', allowed: 'slider'"),
     ({"do": "add", "at": ["friction"], "kind": "Z"}, "joint is 'Z', allowed: 'O'"),

@@ -41,7 +41,7 @@ def test_a_look_has_the_curves_of_its_state(session):
     changed = {"variant": "cam-circle", "values": {"slider.mass": 620.0, "crank_speed": -20}}
     found = asked(session, state=changed, show=["balancing_torque", "O", "unknown", "O"], count=90)
     s = CASE.variants["cam-circle"].scene.varied(changed["values"]).solve(90)
-    assert (found["id"], found["kind"], found["state"], found["way"]) == (1, "look", changed, -1)
+    assert (found["id"], found["kind"], found["state"], found["sense"]) == (1, "look", changed, -1)
     assert list(found["quantities"]) == ["balancing_torque", "O"]
     np.testing.assert_allclose(found["quantities"]["balancing_torque"]["values"], [s.balancing_torque], rtol=1e-12)
     np.testing.assert_allclose(found["quantities"]["O"]["values"], s.reaction("O"), rtol=1e-12, atol=1e-6)

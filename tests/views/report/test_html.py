@@ -90,7 +90,7 @@ def test_first_angle_has_the_largest_torque():
     solution = subject("pumpjack").reference.solution
     data = page("pumpjack")[1]
     assert data["start"] == np.argmax(np.abs(solution.balancing_torque))
-    assert data["way"] == -1
+    assert data["sense"] == -1
 
 
 def test_machines_of_the_same_torque_are_named():
