@@ -33,6 +33,18 @@ def drawing_of(solution):
     return _framed({"": Shape(solution)})[""]
 
 
+def one_pose(drawing, index):
+    """A drawing without all poses but one, whose index it has as `pose`."""
+    chosen = slice(index, index + 1)
+    strokes = [
+        stroke | {key: stroke[key][chosen] for key in ("poses", "shapes") if key in stroke}
+        for stroke in drawing["strokes"]
+    ]
+    places = {key: {name: part[chosen] for name, part in drawing[key].items()} for key in ("joints", "forces")}
+    masses = [place[chosen] for place in drawing["masses"]]
+    return drawing | places | {"strokes": strokes, "masses": masses, "torque": drawing["torque"][chosen], "pose": index}
+
+
 def movements(machines):
     """Drawings of machines by name; machines of like size have one frame and force scale.
 

@@ -93,6 +93,24 @@ def test_a_pivot_follows_the_pointer_and_one_undo_brings_it_back(opened):
     assert page.severe() == []
 
 
+def test_the_crank_can_turn_while_a_point_is_held(opened):
+    page = opened("four-bar")
+    drag(page, "rocker_pivot.x", 24, -16, release=False)
+    assert page.script("return page.shown.drawing.pose") == 0
+    page.script("page.clock.choose(90)")
+    page.wait(lambda: page.script("return page.shown.drawing.pose === undefined"))
+    pins = (
+        "return page.drawing.machine.pins.flatMap(({pin}) => "
+        "page.drawing.metres(+pin.getAttribute('cx'), +pin.getAttribute('cy')))"
+    )
+    turned = page.script(pins)
+    hand(page).release().perform()
+    page.settled()
+    assert page.script(pins) == pytest.approx(turned, abs=1e-3)
+    page.script("page.clock.choose(0)")
+    assert page.script(pins) != pytest.approx(turned, abs=0.1)
+
+
 def test_a_mass_centre_follows_the_pointer_in_the_axes_of_its_link(opened):
     page = opened("four-bar")
     page.script("page.clock.choose(60)")

@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import drawn_limit, ordinary_size, unit_for
-from ..movement import drawing_of
+from ..movement import drawing_of, one_pose
 from ..report.tables import KINDS
 from . import answers, fields, groups, keeping, running, searching
 from .handles import dragged, handle_data
@@ -281,7 +281,8 @@ def look(session, request):
 def drag(session, request):
     """The machine of another state: with a point dragged to (x, y), m, at the crank angle of an index.
 
-    `step` is the snapping step, m; the page keeps it while a point is dragged.
+    `step` is the snapping step, m; the page keeps it while a point is dragged. While the hand goes on, `still`, the
+    drawing has the pose at the index alone, so that the answer comes sooner.
     Impossible numbers are a problem and leave the state; a machine that cannot be assembled is a state with a problem.
     """
     state, place = request["state"], [request.get(key) for key in ("x", "y", "index", "step")]
@@ -296,9 +297,16 @@ def drag(session, request):
     new = state | {"values": values}
     session.scene(new)
     try:
-        return {"state": new} | look(session, request | {"state": new})
+        found = look(session, request | {"state": new})
+        drawing = found["drawing"]
+        return (
+            {"state": new} | found | {"drawing": one_pose(drawing, at[2]) if request.get("still") is True else drawing}
+        )
     except KinetostaticsError as error:
         return {"state": new, "problem": problem_text(error)}
+    if request.get("still") is True:
+        found["drawing"] = one_pose(found["drawing"], at[2])
+    return found
 
 
 def curve(solution, known):

@@ -1,7 +1,7 @@
 // Curves with axes in an <svg> of their own: over the crank angle, or in the plane with equal scales.
 // A curve: {name, colour, dash, thin, x, y, period?, angle?}. Over the turn x is in degrees, rising over its own period
 // (by default the chart's); in the plane `angle` holds the degrees of its points (by default even ones).
-import { element, put, short } from "./svg.js";
+import { element, put, short, tenths } from "./svg.js";
 
 const LEFT = 58, RIGHT = 16, TOP = 26, BOTTOM = 38;
 const CLOSEST_TICKS = [45, 24]; // pixels, along x and y
@@ -198,7 +198,7 @@ export class Chart {
     let text = "", pen = "M";
     const { scaleX, scaleY, across: [left], up: [, high] } = this;
     this.visit(curve, (x, y) => {
-      text += `${pen}${Math.round(10 * scaleX * (x - left)) / 10} ${Math.round(10 * scaleY * (high - y)) / 10}`;
+      text += `${pen}${tenths(scaleX * (x - left))} ${tenths(scaleY * (high - y))}`;
       pen = "L";
     }, () => { pen = "M"; });
     return text;

@@ -22,7 +22,11 @@ function parts({ values, factor }) {
 
 // Decimals that give the largest value of a curve, of those in sight, four significant digits.
 function decimalsOf(values, sight) {
-  const largest = Math.max(0, ...values.map(Math.abs).filter((size) => size <= sight));
+  let largest = 0;
+  for (const value of values) {
+    const size = Math.abs(value);
+    if (size > largest && size <= sight) largest = size;
+  }
   return largest ? Math.min(12, Math.max(0, CAPTION_DIGITS - 1 - Math.floor(Math.log10(largest)))) : 0;
 }
 

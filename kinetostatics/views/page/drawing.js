@@ -1,6 +1,7 @@
 // One machine in one <svg>, at a chosen crank angle. Its data are those of `movement.py`, with typed arrays:
 //   strokes [{kind, filled, points, poses?, shapes?}], joints {name: places}, moving and named joints, masses [places],
-//   arrows {reaction: joint}, forces {reaction: vectors}, torque, centre (joint at which the torque is drawn),
+//   arrows {reaction: joint}, forces {reaction: vectors}, torque, centre (joint at which the torque is drawn), pose
+//   (index of the crank angle, if it has one pose alone),
 //   and its frame: box [left, low, right, high], scale (m per N), longest arrow, largest_torque, force_unit.
 import { element, put, short } from "./svg.js";
 

@@ -325,6 +325,7 @@ export class Explore {
     this.handles?.show(index);
     if (!this.shown) return;
     this.curves.follow(this.shown.angle[index % this.shown.angle.length]);
+    if ((this.shown.drawing.pose ?? index) !== index) this.look(); // drawn in another pose alone
     if (!this.clock.running) this.remember();
   }
 

@@ -17,3 +17,12 @@ export function put(target, attributes) {
 }
 
 export const short = (value) => Math.round(100 * value) / 100;
+
+const MOST_TEXTS = 20000;
+const texts = []; // of tenths: to make them anew takes longer than all else in a path
+
+// A number of pixels as text, to a tenth.
+export function tenths(value) {
+  const count = Math.round(10 * value);
+  return count >= 0 && count < MOST_TEXTS ? texts[count] ??= `${count / 10}` : `${count / 10}`;
+}

@@ -295,6 +295,24 @@ def test_a_drag_begins_with_the_machine_that_is_shown(session, monkeypatch):
     assert len(solved) == 1
 
 
+def test_a_drawing_under_the_hand_has_its_pose_alone():
+    session, at = Session("pumpjack", "weights"), {"variant": "weights", "values": {}}
+    place = {"handle": "rocker_pivot.x", "x": 2.5, "y": -1.0, "index": 60 - 360, "step": 0.01}
+    one, all_poses = (asked(session, "drag", state=at, still=still, **place)["drawing"] for still in (True, False))
+    assert (one["pose"], len(one["torque"])) == (60, 1)
+    assert "pose" not in all_poses
+    for key in ("joints", "forces"):
+        for name, places in all_poses[key].items():
+            np.testing.assert_array_equal(one[key][name], places[60:61], f"{key} {name}")
+    for stroke, whole in zip(one["strokes"], all_poses["strokes"], strict=True):
+        np.testing.assert_array_equal(stroke["points"], whole["points"])
+        for key in ("poses", "shapes"):
+            np.testing.assert_array_equal(stroke.get(key, []), whole.get(key, [])[60:61])
+    assert {key: one[key] for key in ("box", "scale", "moving")} == {
+        key: all_poses[key] for key in ("box", "scale", "moving")
+    }
+
+
 def test_packed_answers_are_freed_at_once():
     """A server answers for hours: no answer waits for the garbage collection."""
     gc.disable()
