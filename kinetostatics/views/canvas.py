@@ -194,6 +194,10 @@ def ordinary_size(arrays):
     Values grow without bound if they are far beyond most others, as forces near change points, or beside a gap.
     """
     rows = [np.abs(np.atleast_1d(np.asarray(array, dtype=float))) for array in arrays]
+    most = max((float(np.max(row, initial=0.0)) for row in rows), default=0.0)  # NaN with a gap
+    mean = sum(float(np.sum(row)) for row in rows) / max(1, sum(row.size for row in rows))
+    if UNBOUNDED_RATIO * (mean - (1.0 - ORDINARY_SHARE) * most) >= most and np.isfinite(most):
+        return most  # the quantile below is at least this difference
     others = []
     for values in rows:
         missing = np.isnan(values)

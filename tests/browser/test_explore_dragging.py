@@ -64,7 +64,7 @@ def drag(page, name, x, y, release=True):
         .move_by_offset(x - x // 2, y - y // 2)
     )
     done.perform()
-    page.wait(lambda: not page.script("return page.requests.busy || page.handles.asked"))
+    page.wait(lambda: not page.script("return page.requests.busy || page.handles.frame"))
     if release:
         hand(page).release().perform()
         page.settled()

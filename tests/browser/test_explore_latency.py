@@ -22,7 +22,9 @@ WATCH = """
 page.latencies = [];
 page.shares = {draw: [], server: []};
 let moved = 0;
-addEventListener("pointermove", (event) => { moved = event.timeStamp; }, true);
+for (const kind of ["pointerrawupdate", "pointermove"]) { // a browser may have one or both
+  addEventListener(kind, (event) => { moved = event.timeStamp; }, true);
+}
 const drag = page.drag.bind(page), { onlook, send } = page.requests;
 page.drag = (fields, still) => drag({ ...fields, moved }, still);
 page.requests.send = (kind, fields) => {

@@ -18,6 +18,7 @@ from ...machine.group import CRANK
 from ...machine.guide import Guide
 from ...machine.loads.load import Load
 from ...numbers import checks
+from ...numbers.lazy import cached_property
 from ..strokes import Shape, left
 
 STEPS_OVER_SIZE = 200.0
@@ -90,29 +91,7 @@ def handles(solution):
     >>> [handle.label for handle in handles(saw.solve(8))]
     ['crank length', 'coupler length', 'guide angle', 'guide offset', 'mass centre of the slider']
     """
-    return _Points(solution).side_by_side()
-
-
-def handle_data(solution, places=None):
-    """Handles of a solution for a page, their places (N, 2) in single precision, and the snapping step, m.
-
-    `places` are those of the numbers of its scene, if they are known.
-    """
-    points = _Points(solution, places)
-    return {
-        "handles": [
-            {
-                "name": handle.name,
-                "label": handle.label,
-                "kind": handle.kind,
-                "paths": handle.paths,
-                "position": handle.position.T.astype(np.float32),
-                "row": handle.row,
-            }
-            for handle in points.side_by_side()
-        ],
-        "snap": snap_step(points.size),
-    }
+    return Points(solution).side_by_side()
 
 
 def dragged(solution, name, x, y, index, snap=True, step=None):
@@ -133,24 +112,7 @@ def dragged(solution, name, x, y, index, snap=True, step=None):
     >>> dragged(saw, "crank_length", 0.327, 0.0, 0), dragged(saw, "crank_length", 0.327, 0.0, 0, snap=False)
     ({'crank_length': 0.33}, {'crank_length': 0.327})
     """
-    points = _Points(solution)
-    handle = next(iter(points.all(name)), None) if isinstance(name, str) else None
-    if handle is None:
-        raise ParameterError(f"there is no point {checks.shown(name)} to drag")
-    old = [float(solution.places[path].value(solution)) for path in handle.paths]
-    new = [float(value) for value in handle.measure(np.array([x, y], dtype=float), index)]
-    unit = solution.places[name].rule.unit
-    share = 1.0 if snap else 1.0 / FINE
-    if unit == "m":
-        step = snap_step(points.size) if step is None else step
-        new = [_rounded(*values, share * step) for values in zip(old, new, strict=True)]
-    elif unit == "rad":
-        new = [_rounded(old[0], new[0], share * ANGLE_STEP, DEGREE)]
-    else:  # a direction
-        before = math.atan2(*old[::-1])
-        turned = _rounded(before, _near(math.atan2(*new[::-1]), before), share * ANGLE_STEP, DEGREE)
-        new = old if turned == before else [math.cos(turned), math.sin(turned)]
-    return dict(zip(handle.paths, new, strict=True))
+    return Points(solution).dragged(name, x, y, index, snap, step)
 
 
 def snap_step(size):
@@ -190,8 +152,11 @@ def _words(path):
     return re.sub(r"(?<=[a-z])(?=\d)", " ", text)
 
 
-class _Points:
-    """Handles of a solution, from the dimensions of its parts and loads."""
+class Points:
+    """Handles of a solution, from the dimensions of its parts and loads.
+
+    `places` are those of the numbers of its scene, if they are known.
+    """
 
     def __init__(self, solution, places=None):
         self.solution, self.mechanism, self.motion = solution, solution.mechanism, solution.dynamics
@@ -199,20 +164,54 @@ class _Points:
         self.shape = Shape(self.motion)
         self.size = self.shape.size
 
-    def all(self, name=None):
-        """Handles: joints, other points, guides and angles, mass centres; with a name that one alone."""
+    def data(self):
+        """Handles for a page, their places (N, 2) in single precision, and the snapping step, m."""
+        found = [
+            {
+                "name": handle.name,
+                "label": handle.label,
+                "kind": handle.kind,
+                "paths": handle.paths,
+                "position": handle.position.T.astype(np.float32),
+                "row": handle.row,
+            }
+            for handle in self.side_by_side()
+        ]
+        return {"handles": found, "snap": snap_step(self.size)}
+
+    def dragged(self, name, x, y, index, snap=True, step=None):
+        """Values by path that bring a point to a place, see `dragged`."""
+        handle = next((handle for handle in self.all if handle.name == name), None)
+        if handle is None:
+            raise ParameterError(f"there is no point {checks.shown(name)} to drag")
+        old = [float(self.places[path].value(self.solution)) for path in handle.paths]
+        new = [float(value) for value in handle.measure(np.array([x, y], dtype=float), index)]
+        unit = self.places[name].rule.unit
+        share = 1.0 if snap else 1.0 / FINE
+        if unit == "m":
+            step = snap_step(self.size) if step is None else step
+            new = [_rounded(*values, share * step) for values in zip(old, new, strict=True)]
+        elif unit == "rad":
+            new = [_rounded(old[0], new[0], share * ANGLE_STEP, DEGREE)]
+        else:  # a direction
+            before = math.atan2(*old[::-1])
+            turned = _rounded(before, _near(math.atan2(*new[::-1]), before), share * ANGLE_STEP, DEGREE)
+            new = old if turned == before else [math.cos(turned), math.sin(turned)]
+        return dict(zip(handle.paths, new, strict=True))
+
+    @cached_property
+    def all(self):
+        """Handles: joints, other points, guides and angles, mass centres."""
         groups: dict[Any, list[Any]] = {}
         for path, steps, dimension in self.declared():
             groups.setdefault(_target(steps, dimension), []).append((path, dimension))
-        wanted = (group for group in groups.values() if name in (None, group[0][0]))
-        found = [self.handle(*zip(*group, strict=True)) for group in wanted]
+        found = [self.handle(*zip(*group, strict=True)) for group in groups.values()]
         found.sort(key=lambda handle: KINDS.index(handle.kind))
-        centres = {f"{link}.centre.along": link for link, body in self.mechanism.links.items() if body.mass != 0}
-        return found + [self.mass_centre(link) for path, link in centres.items() if name in (None, path)]
+        return found + [self.mass_centre(link) for link, body in self.mechanism.links.items() if body.mass != 0]
 
     def side_by_side(self):
         """All handles, with the rows of those that coincide."""
-        return _in_rows(self.all(), self.crank_pins(), CLOSE * self.size)
+        return _in_rows(self.all, self.crank_pins(), CLOSE * self.size)
 
     def crank_pins(self):
         """Positions of the joints that turn with the crank; they stay free, because they turn it in the drawing."""

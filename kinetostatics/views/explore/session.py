@@ -25,7 +25,7 @@ from ..canvas import drawn_limit, ordinary_size, unit_for
 from ..movement import drawing_of, one_pose
 from ..report.tables import KINDS
 from . import answers, fields, groups, keeping, running, searching
-from .handles import dragged, handle_data
+from .handles import Points
 
 MAX_SCENES = 32
 """Scenes kept of the states asked for last."""
@@ -72,7 +72,7 @@ class Session:
         self._reference: tuple[Any, Any] = None, None
         self._scenes: OrderedDict[str, Scene] = OrderedDict()
         self.looked: tuple[Any, Any] = None, None
-        """Scene and solution of the last look."""
+        """Scene of the last look, and the points of its solution."""
 
     def answer(self, request):
         """The answer to a request, a dict, or a generator of several; a sentence `problem` on what a user can mend."""
@@ -121,11 +121,11 @@ class Session:
         self._scenes.move_to_end(key)
         return self._scenes[key]
 
-    def shown(self, state, count):
-        """Solution of a state at even crank angles, gaps allowed: the one of the last look, if it is that."""
-        scene = self.scene(state)
-        same = self.looked[0] is scene and self.looked[1].crank_angle.size == count
-        return self.looked[1] if same else scene.solve(count, on_gap="nan")
+    def points(self, state, count):
+        """Points of a state at even crank angles, gaps allowed: those of the last look, if it is of that state."""
+        scene, (looked, points) = self.scene(state), self.looked
+        same = looked is scene and points.solution.crank_angle.size == count
+        return points if same else Points(scene.solve(count, on_gap="nan"), scene.places)
 
     def reference(self, state):
         """The `Reference` of a state, kept until another one is asked for."""
@@ -265,7 +265,8 @@ def look(session, request):
     show = request.get("show", [])
     require_names(show)
     solution = scene.solve(count_of(request))
-    session.looked = scene, solution
+    points = Points(solution, scene.places)
+    session.looked = scene, points
     known = of_scene(scene)
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
@@ -274,7 +275,7 @@ def look(session, request):
         "period": float(np.degrees(scene.period)),
         "sense": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
         "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
-        **handle_data(solution, scene.places),
+        **points.data(),
     }
 
 
@@ -289,19 +290,15 @@ def drag(session, request):
     if not all(map(is_number, place)) or not place[3] > 0:
         raise ParameterError(f"explore: x, y, index and step (above 0) must be numbers, got {checks.shown(place)}")
     x, y, index, step = place
-    solution = session.shown(state, count_of(request))
-    at = float(x), float(y), int(index) % solution.crank_angle.size
-    moved = dragged(solution, request.get("handle"), *at, request.get("snap") is not False, step)
-    own = session.base(state).parameters
-    values = {path: value for path, value in (state.get("values", {}) | moved).items() if value != own.get(path)}
-    new = state | {"values": values}
+    count = count_of(request)
+    at = float(x), float(y), int(index) % count
+    moved = session.points(state, count).dragged(request.get("handle"), *at, request.get("snap") is not False, step)
+    base, values = session.base(state), state.get("values", {}) | moved
+    own = {path: place.value(base) for path, place in base.places.items() if path in values}
+    new = state | {"values": {path: value for path, value in values.items() if value != own.get(path)}}
     session.scene(new)
     try:
-        found = look(session, request | {"state": new})
-        drawing = found["drawing"]
-        return (
-            {"state": new} | found | {"drawing": one_pose(drawing, at[2]) if request.get("still") is True else drawing}
-        )
+        found = {"state": new} | look(session, request | {"state": new})
     except KinetostaticsError as error:
         return {"state": new, "problem": problem_text(error)}
     if request.get("still") is True:

@@ -12,6 +12,8 @@ const GRIPS = { // forms by kind, about (0, 0)
 const REACH = 13; // radius, in pixels, within which a grip is held
 const ASIDE = 17; // pixels between grips of points that coincide
 const TIP_LINE = 15, TIP_ASIDE = 14;
+// Where a browser has it: it comes at once, not with the next frame.
+const MOVED = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
 const NUDGES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 const HINT = "Arrow keys move it by a step, with Shift by ten; Alt moves it without snapping.";
 
@@ -121,7 +123,7 @@ export class Handles {
     const on = (name, listener) => window.addEventListener(name, (next) => {
       if (next.pointerId === event.pointerId) listener(next);
     }, { signal: listening.signal });
-    on("pointermove", ({ clientX, clientY, altKey }) => {
+    on(MOVED, ({ clientX, clientY, altKey }) => {
       this.move(x + perPixel * (clientX - event.clientX), y - perPixel * (clientY - event.clientY), !altKey);
     });
     on("pointerup", () => this.drop());
@@ -139,14 +141,20 @@ export class Handles {
     this.move(this.held.x + times * step[0], this.held.y + times * step[1], !event.altKey);
   }
 
-  // Ask at the next frame for the point at a place.
+  // Ask for the point at a place: at once, or at the next frame if this one has asked.
   move(x, y, snap) {
-    Object.assign(this.held, { x, y, snap });
+    Object.assign(this.held, { x, y, snap, asked: false });
+    if (!this.frame) this.ask();
+  }
+
+  ask() {
+    this.held.asked = true;
     this.aim();
     this.showTip(this.held.grip);
-    this.asked ??= requestAnimationFrame(() => {
-      this.asked = null;
-      this.ondrag(this.wanted);
+    this.ondrag(this.wanted);
+    this.frame = requestAnimationFrame(() => {
+      this.frame = null;
+      if (!this.held.asked) this.ask();
     });
   }
 
@@ -163,8 +171,8 @@ export class Handles {
   }
 
   drop() {
-    cancelAnimationFrame(this.asked);
-    this.asked = null;
+    cancelAnimationFrame(this.frame);
+    this.frame = null;
     const { grip, snap, listening } = this.held, { wanted } = this;
     listening?.abort();
     this.held = null;
