@@ -1,4 +1,6 @@
-"""How fast forces follow the hand: from a pointer event of the browser to the drawing and ten figures redrawn.
+"""How fast the explore page is: forces that follow the hand, a mechanism that turns, a page that opens.
+
+The latency is that from a pointer event of the browser to the drawing and ten figures redrawn.
 
 Run by ``python -m pytest tests/browser/test_explore_latency.py --benchmark-only -n 0``, alone on the machine. The
 pointer moves 60 times a second. An event that comes while a machine is under way waits, and is counted from its own
@@ -14,10 +16,16 @@ import pytest
 
 from kinetostatics.views.explore.session import Session
 
+pages = pytest.importorskip("support.explored")
+
 MEDIAN, WORST = 30.0, 50.0
 """Limits of the latency and of its 95 % quantile, ms."""
 LOGS = ("browser",)
 FIGURES, MOVES, PACE = 10, 150, 1.0 / 60.0
+FRAMES = 30.0
+"""Least frames a second while the crank turns."""
+COLD, READY = 3.0, 0.5
+"""Limits of the time from the command to the address, and from there to the first machine, s."""
 WATCH = """
 page.latencies = [];
 page.shares = {draw: [], server: []};
@@ -89,3 +97,41 @@ def test_forces_follow_the_hand(benchmark, explored, driver, tell, case, variant
     assert page.severe() == []
     assert median <= MEDIAN
     assert worst <= WORST
+
+
+CASES = pytest.mark.parametrize(("case", "variant"), [("sawframe_2r63", "cam-circle"), ("pumpjack", "weights")])
+
+
+@CASES
+def test_the_crank_turns_in_even_frames(benchmark, explored, driver, tell, case, variant):
+    path = f"cases/{case}.toml"
+    driver.set_window_size(1600, 1200)
+    page = explored(path, "--variant", variant, fields=shown_at_first(path, variant))
+    page.settled()
+
+    def turn():
+        page.script("""page.times = []; page.clock.follow(() => {
+            page.root.getBoundingClientRect(); page.times.push(performance.now());
+        }); page.clock.pace.value = "2"; page.clock.run(true);""")
+        time.sleep(4.0)
+        return np.diff(page.script("page.clock.run(false); return page.times"))[1:]
+
+    between = benchmark.pedantic(turn, rounds=1)
+    frames = 1e3 / between.mean()
+    tell(f"{case}: {frames:.0f} frames a second, {np.quantile(between, 0.95):.0f} ms apart at 95 %")
+    assert frames >= FRAMES
+
+
+@CASES
+def test_the_page_opens_at_once(benchmark, driver, tell, case, variant):
+    def opened():
+        start = time.perf_counter()
+        with pages.explore_server(f"cases/{case}.toml", "--variant", variant) as address:
+            served = time.perf_counter()
+            pages.ExplorePage(driver, address)
+            return served - start, time.perf_counter() - served
+
+    cold, ready = benchmark.pedantic(opened, rounds=1)
+    tell(f"{case}: address after {cold:.2f} s, first machine shown {ready:.2f} s later")
+    assert cold <= COLD
+    assert ready <= READY
