@@ -28,9 +28,9 @@ MAX_BOX_POINTS = 2000
 """Points of a stroke that the box of a drawing is found from."""
 
 
-def drawing_of(solution):
-    """Drawing of one machine in a frame of its own; `movements` describes it."""
-    return _framed({"": Shape(solution)})[""]
+def drawing_of(shape):
+    """Drawing of a `Shape` in a frame of its own; `movements` describes it."""
+    return _framed({"": shape})[""]
 
 
 def one_pose(drawing, index):

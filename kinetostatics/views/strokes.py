@@ -125,6 +125,10 @@ class Shape:
         joints = np.concatenate([self.turn.position(name) for name in self.turn.placement.joints], axis=-1)
         return float(np.max(np.nanmax(joints, axis=-1) - np.nanmin(joints, axis=-1))) or 1.0
 
+    @cached_property
+    def _signs_over_turn(self):
+        return {}
+
     @property
     def unit(self):
         """Half the length of a block, m."""
@@ -251,8 +255,18 @@ class Shape:
     def signs(self, loads, pose):
         """Lines of all loads in the poses of a motion."""
         for item in loads:
-            for sign in _signs(item, pose):
+            for sign in self._signs(item, pose):
                 yield from self._sign(sign)
+
+    def _signs(self, item, pose):
+        """Signs of a load in the poses of a motion, over the turn computed once; a user's own load may have none."""
+        if not hasattr(item, "signs"):
+            return ()
+        if pose is not self.turn:
+            return item.signs(pose)
+        if id(item) not in self._signs_over_turn:
+            self._signs_over_turn[id(item)] = item, tuple(item.signs(pose))  # no other load gets its id
+        return self._signs_over_turn[id(item)][1]
 
     def _sign(self, sign):
         unit = self.unit
@@ -311,17 +325,12 @@ class Shape:
             if point.link == FRAME:
                 yield self.turn.position(name)[:, 0]
         for item in loads:
-            for sign in _signs(item, self.turn):
+            for sign in self._signs(item, self.turn):
                 if sign.kind == "shaft":
                     yield sign.start[:, 0]
                 elif sign.kind in ("spring", "damper", "line") and sign.end is not None:
                     ends = () if self._leads_far(sign.start, sign.end) else (sign.start, sign.end)
                     yield from (end[:, 0] for end in ends if not np.ptp(end, axis=-1).any())
-
-
-def _signs(item, pose):
-    """Signs of a load; a user's own load may have none."""
-    return item.signs(pose) if hasattr(item, "signs") else ()
 
 
 def _on_link(kind, pose, link, points):

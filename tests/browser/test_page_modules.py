@@ -9,6 +9,7 @@ import pytest
 
 from kinetostatics.views.movement import drawing_of
 from kinetostatics.views.page import bundle, packed, source
+from kinetostatics.views.strokes import Shape
 from support.every import every
 from support.reports import plain
 
@@ -320,7 +321,7 @@ def test_ten_charts_are_redrawn_soon(page, chart, record_property):
 
 
 def machine(solution):
-    header, buffers = packed(drawing_of(solution))
+    header, buffers = packed(drawing_of(Shape(solution)))
     return json.dumps(header), [base64.b64encode(buffer).decode() for buffer in buffers]
 
 

@@ -115,7 +115,7 @@ def test_unbounded_reaction_hides_no_other():
 
 def test_arrows_and_torque_are_the_solutions():
     solution = plain().solve(24)
-    found = drawing_of(solution)
+    found = drawing_of(Shape(solution))
     assert list(found["forces"]) == list(solution.reactions)
     for name, vectors in found["forces"].items():
         np.testing.assert_allclose(vectors.T, solution.reaction(name), rtol=1e-6, atol=1e-6)

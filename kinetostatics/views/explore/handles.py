@@ -161,7 +161,7 @@ class Points:
     def __init__(self, solution, places=None):
         self.solution, self.mechanism, self.motion = solution, solution.mechanism, solution.dynamics
         self.places = solution.places if places is None else places
-        self.shape = Shape(self.motion)
+        self.shape = Shape(solution)
         self.size = self.shape.size
 
     def data(self):

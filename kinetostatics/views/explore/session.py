@@ -270,7 +270,7 @@ def look(session, request):
     known = of_scene(scene)
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
-        "drawing": drawing_of(solution),
+        "drawing": drawing_of(points.shape),
         "angle": np.degrees(solution.crank_angle),
         "period": float(np.degrees(scene.period)),
         "sense": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
