@@ -27,6 +27,7 @@ def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
     assert len(table) == 3
 
 
+@pytest.mark.slow
 @every(
     "options, words",
     [

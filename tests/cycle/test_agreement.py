@@ -60,6 +60,7 @@ def disagreements(seed, count=40_000):
     return wrong
 
 
+@pytest.mark.slow
 def test_all_parts_agree():
     assert disagreements(12) == {}
 

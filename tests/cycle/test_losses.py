@@ -162,6 +162,7 @@ def test_comparison_shows_losses_by_joint():
     assert table.loc["efficiency", "balanced"] == other.efficiency
 
 
+@pytest.mark.slow
 def test_comparison_without_friction_omits_losses():
     with_, without = (ks.solve(RUBBED, 0.0, crank_speed=30.0, loads=ks.Gravity(), friction=f) for f in (JOINTS, None))
     assert not any("lost" in row.label for row in ks.compare(without, without).rows)

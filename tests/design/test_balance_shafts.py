@@ -45,6 +45,7 @@ def harmonics(scene, count=2048):
     return np.abs(terms[1 : count // 2]) + np.abs(terms[: count // 2 : -1])
 
 
+@pytest.mark.slow
 @every("speed", [30.0, -30.0])
 @every("name", MACHINES)
 def test_harmonics_cancel_to_rounding_and_others_stay(name, speed):

@@ -52,6 +52,7 @@ def test_groups_loads_and_friction_are_written(tmp_path):
         np.testing.assert_allclose(one, other, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_design_is_written_with_its_reference(tmp_path):
     saw = ks.load_case("sawframe_2r63")
     found = ks.design.torque_free_cam(saw, 2, 2, minimise="rms balancing_torque")

@@ -116,6 +116,7 @@ def test_a_face_that_is_pulled_off_at_rest_has_no_speed_of_lift_off():
     assert found.lift_off_speed == 0.0
 
 
+@pytest.mark.slow
 @every("name", list(KINDS))
 def test_contact_is_that_of_the_scene_with_the_body_in_it(name):
     """Of every kind of follower, with loads on each part, both ways round; named if there are several."""

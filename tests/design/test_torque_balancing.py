@@ -191,6 +191,7 @@ def found():
     return balanced(drive(), guide_offset=0.002, roller_radius=0.005)
 
 
+@pytest.mark.slow
 def test_contact_and_angle_are_extremes_of_the_scene(found):
     s = found.scene.solve(np.linspace(0.001, 6.281, 5000))
     force, angle = s.scalar("contact_force_cam"), np.abs(s.measure("pressure_angle_cam"))
@@ -220,6 +221,7 @@ def test_a_faster_machine_shows_where_it_lifts_off(found):
     assert np.array_equal(inside, ~pressing)
 
 
+@pytest.mark.slow
 def test_report_and_table_show_gain_and_cost(found):
     for text in ("N m mean; uneven by", "preload", "positive at all angles", "pressure angle      30 deg at most"):
         assert text in found.report()

@@ -12,6 +12,7 @@ drawing = pages.script("draw_machines")
 INDEX = pages.DOCS / "machines" / "index.md"
 
 
+@pytest.mark.slow
 def test_each_page_of_a_machine_has_a_picture():
     text = pages.text_of(INDEX)
     listed = re.search(r":caption: Machines\n\n(.*?)```", text, flags=re.DOTALL)[1].split()

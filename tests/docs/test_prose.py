@@ -127,6 +127,7 @@ def test_cells_of_text_are_read():
     assert (number, [line for line, _ in PROSE.findings(blocks)]) == (2, [3])
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not PROSE, reason="the pages are not beside the tests")
 def test_documents_are_in_plain_english():
     assert [complaint for path in PROSE.paths() for complaint in PROSE.checked(path)] == []

@@ -85,6 +85,7 @@ def test_a_machine_at_a_jump_goes_by_the_force_ahead(inside, outside, angle, mov
     assert np.sign(motion.crank_angle[-1] - angle) == moves
 
 
+@pytest.mark.slow
 def test_swings_that_die_out_end_in_standstill():
     friction = {"O": ks.PinFriction(0.9, 0.05), "guide": ks.GuideFriction(0.4)}
     scene = ks.Scene(FLYWHEEL, 1.0, loads=ks.ProcessForce(Step(100.0, -100.0)), friction=friction)

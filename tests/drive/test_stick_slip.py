@@ -241,6 +241,7 @@ def test_friction_and_table_work_without_numba(monkeypatch):
     assert motion.energy_drift < 1e-12 * motion.kinetic_energy[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_periods_solved_together_are_those_one_by_one(monkeypatch, way):
     motion = ks.drive.coast(FRICTION_PUMP, 2.0, 0.3, way * 30.0, until=4.0)

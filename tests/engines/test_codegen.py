@@ -157,6 +157,7 @@ def test_a_steep_force_keeps_to_its_errors(name, flint):
     assert found.tight < 50.0 * found.error
 
 
+@pytest.mark.slow
 def test_numpy_and_loop_read_it_alike(numba):
     scene = pump(back=BACK)
     solved = scene.solve(ordinary_angles(scene, 36, 12))

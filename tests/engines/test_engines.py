@@ -26,6 +26,7 @@ from support.scenes import (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("case", "name"), VARIANTS)
 def test_shipped_variants_are_the_same_by_both_engines(interpreted, case, name):
     expected = SHIPPED[case].solve(name, 36)

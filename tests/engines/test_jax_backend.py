@@ -44,6 +44,7 @@ def test_jax_keeps_to_its_bounds_in_both_precisions(jax):
         assert found.wrong == [], backend
 
 
+@pytest.mark.slow
 def test_jax_gives_nan_only_where_assembly_is_open(jax):
     short = ks.Scene(ks.crank_slider(0.5, 0.3, slider=ks.Link(1.0)), 1.0, loads=ks.Gravity())
     angles = np.linspace(0.01, 6.2, 40)

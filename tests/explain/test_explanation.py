@@ -151,6 +151,7 @@ def told(request):
     return Drawn("cam", 1).scene.solve(0.3).explain("balancing_torque", 0.3)
 
 
+@pytest.mark.slow
 def test_text_fits_80_columns_and_has_every_step(told):
     assert max(map(len, told.text.splitlines())) <= 80
     for step in told.steps:
@@ -257,6 +258,7 @@ def test_friction_is_told_by_the_law_that_it_satisfies(kind):
     assert any("solved together with the reactions" in step.words for step in told.steps)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("name", CHANGING)
 def test_branches_that_pass_change_points(name):

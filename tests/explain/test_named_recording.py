@@ -5,6 +5,7 @@ import inspect
 import pkgutil
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics import machine
@@ -134,6 +135,7 @@ def named(solution, quantity):
     return made, recorder, name_result(made, quantity, of_scene(solution)[quantity])
 
 
+@pytest.mark.slow
 def test_every_quantity_is_computed_to_the_same_bits():
     solution = solve(SCENES["circle cam, everything"], np.array(0.7))
     _, leaves = solution.apart

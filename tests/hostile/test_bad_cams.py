@@ -71,6 +71,7 @@ FIELDS = {
 }
 
 
+@pytest.mark.slow
 @every("value", NO_NUMBERS, ids=[f"{n}-{type(x).__name__}" for n, x in enumerate(NO_NUMBERS)])
 @every("field", FIELDS)
 def test_non_numbers_are_refused_by_field(field, value):

@@ -149,6 +149,7 @@ def test_acceleration_at_zero_guide_force_is_found(step):
     obeys(motion.at(motion.time[:1]), machine.system, 5.0)
 
 
+@pytest.mark.slow
 def test_true_jamming_names_angle_and_flywheel():
     """The pin's lever mu radius, 0.3 m, is longer than the crank: its friction grows faster than inertia frees."""
     crank = ks.crank_slider(0.1, 0.35, crank=ks.Link(2.0, 0.1, 0.0))

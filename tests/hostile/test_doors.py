@@ -74,6 +74,7 @@ WANTED = {
 }
 
 
+@pytest.mark.slow
 @every("other", OTHERS)
 @every("name", WANTED)
 def test_functions_of_solutions_refuse_other_things(name, other):
@@ -311,6 +312,7 @@ def test_own_groups_are_refused_where_unknown(name, own):
     refused(name, FOREIGN[own], "O", "own|OwnSlider")
 
 
+@pytest.mark.slow
 @every(("name", "solution", "quantity", "words"), MIXED)
 def test_missing_formulas_are_refused_with_reason(name, solution, quantity, words):
     refused(name, solution, quantity, words)

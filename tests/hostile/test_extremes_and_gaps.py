@@ -340,6 +340,7 @@ def test_mean_torque_sees_narrow_pulses(half_width):
     assert mean_absolute_torque(solution) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_unconverged_mean_says_its_accuracy():
     wild = ks.ProcessForce(lambda motion: 1e4 * np.sin(1e7 * np.sin(motion.crank_angle)))
     _, said = silently(mean_absolute_torque, at_rest(SAW, [wild]))

@@ -309,12 +309,14 @@ OTHERS = {
 }
 
 
+@pytest.mark.slow
 @every(("call", "kind", "words"), OTHERS.values(), ids=OTHERS)
 def test_what_cannot_be_driven_says_why(call, kind, words):
     with pytest.raises(kind, match=words):
         call()
 
 
+@pytest.mark.slow
 def test_endless_motion_is_given_up_with_progress(monkeypatch):
     monkeypatch.setattr(stick_slip, "MAX_PARTS", 200)
     damped = scene(ks.TorsionDamper(1e-9, on="crank"))

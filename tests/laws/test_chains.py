@@ -153,6 +153,7 @@ def test_every_group_and_pin_has_its_own_paths(kind):
     assert wanted[kind] <= set(program.parameters)
 
 
+@pytest.mark.slow
 @every_kind
 def test_condition_is_small_where_nothing_is_lost(kind):
     condition = scene(kind).solve(ANGLES).condition

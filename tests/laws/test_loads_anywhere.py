@@ -102,6 +102,7 @@ def test_any_load_agrees_with_the_full_system(name, kind):
     assert tried or kind in ("Spring", "ProcessForce")
 
 
+@pytest.mark.slow
 def test_loads_superpose():
     """Two of each kind: what each adds to the forces of the bare machine makes up what all add together."""
     random = np.random.default_rng(0)

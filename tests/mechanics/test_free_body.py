@@ -45,6 +45,7 @@ def test_forces_on_followers_and_their_cams_are_in_equilibrium(kind):
     assert imbalance(followers.scene(followers.KINDS[kind]()).solve(followers.ANGLES)) < CLOSED
 
 
+@pytest.mark.slow
 @every("kind", (*friction_machines.KINDS, *friction_machines.FOLLOWERS))
 def test_friction_is_in_equilibrium(kind):
     scene = friction_machines.Drawn(kind, 3, 0.5).scene

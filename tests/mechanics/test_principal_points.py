@@ -116,6 +116,7 @@ class Masses(NamedTuple):
         return ks.crank_slider(self.L_OA, self.L_AB, guide_angle=0.4, crank=crank, coupler=coupler, slider=slider)
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=5)
 @given(
     masses=st.builds(

@@ -181,6 +181,7 @@ def test_both_senses_of_rotation_have_the_same_couple():
     np.testing.assert_array_equal(forth, back)
 
 
+@pytest.mark.slow
 def test_planes_change_nothing_else():
     groups = tuple(replace(part, plane=None) for part in mixed().groups)
     flat = ks.Mechanism("flat", ks.Crank(0.05, ks.Link(4.0, (0.01, -0.02), 0.03)), groups)
@@ -201,6 +202,7 @@ def test_friction_stays_in_the_sum():
     np.testing.assert_allclose(abs(lost), abs(rubbing.friction_at("O")), rtol=1e-9)
 
 
+@pytest.mark.slow
 @every("quantity", ["rocking_moment", "O left", "shaft_torque lever4"])
 def test_shares_add_up(quantity):
     shares = MIXED.shares(quantity)

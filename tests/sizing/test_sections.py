@@ -219,6 +219,7 @@ def test_a_pin_between_the_ends_makes_shear_and_axial_force_jump():
     assert np.abs(found.bending_moment[[0, -1]]).max() < 1e-9 < 1.0 < np.abs(found.bending_moment[2]).max()
 
 
+@pytest.mark.slow
 def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
     coupler, rocker = ks.Link(2.0, 0.2, 2.0 * 0.4**2 / 12), ks.Link(1.0, 0.05, 1.0 * 0.1**2 / 12)
     deltoid = ks.four_bar(0.1, 0.4, 0.1, rocker_pivot=(0.4, 0.0), assembly="open", coupler=coupler, rocker=rocker)

@@ -73,6 +73,7 @@ def test_push_pull_springs_of_the_saw_fail_by_fatigue(saw):
     assert (f"{found.surge_ratio:.1f}", found.surge_ratio > 2.0) == ("5.3", True)
 
 
+@pytest.mark.slow
 def test_balance_of_the_saw_is_a_fixpoint(saw):
     """A scene with the springs found, their mass counted, asks for the same springs."""
     found = ks.sizing.spring_for(saw, safety=1.1, count=12)

@@ -35,12 +35,14 @@ def misfit(solution, more=()):
     return max(worst.values())
 
 
+@pytest.mark.slow
 @every("name", ["plain, everything", "circle cam, everything", "six-bar"])
 def test_sources_add_up_to_every_force(name):
     whole = ("shaking_force", "shaking_moment", "load_torque", "balancing_torque_by_power")
     assert misfit(SCENES[name].solve(ANGLES), whole if name == "plain, everything" else ()) < ROUNDING
 
 
+@pytest.mark.slow
 @every("seed", range(2))
 def test_sources_add_up_on_random_chains(seed):
     scene, angles = chains.chain(seed)

@@ -73,6 +73,7 @@ def test_dynamic_coefficients_of_the_saw_upright(name, direction, gain, extrema,
     assert round(found.peak_reaction_ratio("O"), 2) == reaction
 
 
+@pytest.mark.slow
 @every(
     ("carried", "gain"),
     [(600.0, "82"), (675.0, "149"), (0.0, "16.6")],

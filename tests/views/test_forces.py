@@ -68,6 +68,7 @@ def test_only_the_link_is_drawn():
     assert len(ks.plots.mechanism(S, angles=(60,)).lines) > max(figures.values())
 
 
+@pytest.mark.slow
 @every("quantity, superposed", [("O", S), ("balancing_torque", RUBBING)])
 def test_bars_are_the_shares(quantity, superposed):
     found = superposed.shares(quantity)

@@ -155,6 +155,7 @@ def test_the_compiled_engine_agrees():
         assert far(other, one) < 1e-14
 
 
+@pytest.mark.slow
 def test_jax_agrees():
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):

@@ -80,6 +80,7 @@ def test_heavy_springs_load_the_frame_more_than_the_plain_saw(case):
 # Laws
 
 
+@pytest.mark.slow
 @every("spring", [{}, {"cubic": 2e4}])
 @every("gravity", [0.0, 9.81])
 def test_a_third_of_the_mass_moves_with_the_slider(spring, gravity):

@@ -10,6 +10,7 @@ from kinetostatics.studies.methods.high_precision.certified import exact_speed
 from support.drives import ANGLES, BY_NAME, IDLE, MOTOR, REFERENCE, SAW
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "setting", "error"),
     [

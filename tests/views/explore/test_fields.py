@@ -75,6 +75,7 @@ def test_slider_reaches_its_number_in_round_steps(case, variant):
             assert places == pytest.approx(round(places), abs=1e-6), path
 
 
+@pytest.mark.slow
 def test_direction_of_a_guide_through_points_has_no_sliders():
     scene = ks.load_case("mower_drive").variants["unbalanced"].scene
     assert set(scene.parameters) - set(fields_of("mower_drive", "unbalanced")) == {"exact.x", "exact.y"}

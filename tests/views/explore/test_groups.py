@@ -102,6 +102,7 @@ LACKS = {
 """What the four-bar lacks for a load."""
 
 
+@pytest.mark.slow
 @every("part", KINDS, ids=lambda part: part[1])
 def test_every_kind_is_added_by_its_proposal_and_solves(part):
     name, kind = part
@@ -113,6 +114,7 @@ def test_every_kind_is_added_by_its_proposal_and_solves(part):
     assert float(np.max(solution.power_residual)) < 1e-11
 
 
+@pytest.mark.slow
 @every("part", KINDS, ids=lambda part: part[1])
 def test_every_kind_is_added_to_a_four_bar_or_the_message_names_the_lack(part):
     name, kind = part
@@ -502,6 +504,7 @@ def test_a_broken_chain_and_an_action_without_a_place_end_in_words():
     assert {fault["key"] for fault in found["faults"]} == {"crank_speed", "groups"}
 
 
+@pytest.mark.slow
 @every("kind", STARTERS)
 def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
     session = Session(groups.template(kind), folder=tmp_path)

@@ -62,6 +62,7 @@ def test_extremes_stand_between_the_angles():
                     assert [size.min(), size.max()] == pytest.approx([low, high], rel=1e-9, abs=1e-9 * max(high, -low))
 
 
+@pytest.mark.slow
 def test_a_quantity_that_a_machine_lacks_stands_empty():
     values = of("sawframe_2r63")["quantities"]["cam_force"]["values"]
     assert values[0] is None
