@@ -374,7 +374,7 @@ def _read_variant(name, own, common, folder, problems):
             return None
         read = build.read_files(table, folder)
     try:
-        variant = make_variant(table, folder, read)
+        variant = make_variant(table, folder.absolute(), read)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", HintWarning)  # `load_case` gives them, with the file and the variant
             warnings.simplefilter("ignore", ConditionWarning)  # the user gets them when solving

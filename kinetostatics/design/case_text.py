@@ -297,8 +297,8 @@ def _unit_text(unit):
 
 
 def _quoted(value):
-    """Text of a string, boolean, number or list, equal in TOML and JSON."""
-    return json.dumps(value, ensure_ascii=False)
+    """Text of a string, boolean, number or list, equal in TOML and JSON but for the letter DEL."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _key(name):

@@ -22,11 +22,14 @@ _NUMBER = re.compile(NUMBER)
 
 
 def find_on_disk(path) -> Path:
-    """Path of a file, also where its name on disk has another Unicode form ("ä" as one character or as two)."""
+    """Path of a file, also where a name on disk has another Unicode form ("ä" as one character or as two)."""
     path = Path(path)
-    if path.name.isascii() or path.exists() or not path.parent.is_dir():
+    if str(path).isascii() or path.exists() or path == path.parent:
         return path
-    same = (other for other in path.parent.iterdir() if normalise(other.name) == normalise(path.name))
+    folder = find_on_disk(path.parent)
+    if not folder.is_dir():
+        return path
+    same = (other for other in folder.iterdir() if normalise(other.name) == normalise(path.name))
     return next(same, path)
 
 

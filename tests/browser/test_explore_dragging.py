@@ -111,6 +111,60 @@ def test_the_crank_can_turn_while_a_point_is_held(opened):
     assert page.script(pins) != pytest.approx(turned, abs=0.1)
 
 
+HAND = """
+const done = arguments[arguments.length - 1], page = document.querySelector(".explore").explore;
+const wait = (time) => new Promise((after) => setTimeout(after, time));
+const grip = page.handles.grips.get("rocker_pivot.x"), [x, y] = page.handles.at(grip.item), step = page.handles.snap;
+const index = page.clock.index;
+const move = (steps, still) => page.drag({ handle: grip.name, x: x + steps * step, y, index, snap: true, step }, still);
+(async () => { STEPS })().then(() => done(""), (error) => done(String(error)));
+"""
+"""A hand whose steps do not wait for answers."""
+TURNS = {
+    "after the drop": "move(1, true); await wait(500); move(2, true); move(3, false); page.clock.choose(90);",
+    "by play after the drop": "move(1, true); await wait(500); move(2, true); move(3, false); page.clock.run(true); "
+    "await wait(300); page.clock.run(false);",
+    "while held": "move(1, true); await wait(500); page.clock.choose(90); await wait(500); move(2, true); "
+    "move(3, false);",
+}
+
+
+@pytest.mark.parametrize("when", TURNS)
+def test_a_drop_is_not_lost_when_the_crank_turns(opened, when):
+    page = opened("four-bar")
+    start, snap = field(page, "rocker_pivot.x"), page.script("return page.handles.snap")
+    assert page.driver.execute_async_script(HAND.replace("STEPS", TURNS[when])) == ""
+    page.settled()
+    assert page.state["values"]["rocker_pivot.x"] == pytest.approx(start + 3 * snap, abs=0.51 * snap)
+    assert page.script("return page.shown.state.values") == page.state["values"]
+    assert page.script("return [page.moving, page.history.states.length]") == [False, 2]
+    page.wait(lambda: page.script("return page.drawing.machine.count") == 360)
+    assert page.severe() == []
+
+
+def test_the_ghost_turns_with_the_crank(opened):
+    page = opened("four-bar")
+    drag(page, "coupler_length", -60, 60)
+    page.wait(lambda: page.script("return page.shown === null && page.drawing.machine.count === 360"))
+    pins = "return page.drawing.machine.pins.map(({pin}) => pin.getAttribute('cx'))"
+    before = page.script(pins)
+    page.script("page.clock.choose(90)")
+    assert page.script(pins) != before
+    assert page.script("return page.drawing.root.classList.contains('ghost')")
+
+
+def test_steps_of_keys_without_a_pause_are_all_taken(opened):
+    page = opened("four-bar")
+    start, snap = field(page, "rocker_pivot.x"), page.script("return page.handles.snap")
+    page.script("page.handles.grips.get('rocker_pivot.x').group.focus()")
+    keys = webdriver.ActionChains(page.driver, duration=0)
+    for _ in range(5):
+        keys.key_down(webdriver.Keys.ARROW_RIGHT).key_up(webdriver.Keys.ARROW_RIGHT)
+    keys.perform()
+    page.settled()
+    assert field(page, "rocker_pivot.x") == pytest.approx(start + 5 * snap, abs=0.51 * snap)
+
+
 def test_a_mass_centre_follows_the_pointer_in_the_axes_of_its_link(opened):
     page = opened("four-bar")
     page.script("page.clock.choose(60)")

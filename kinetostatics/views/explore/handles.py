@@ -124,7 +124,7 @@ def snap_step(size):
 
 def _rounded(old, new, step, unit=1.0):
     """The multiple of a step, in a unit, nearest to a new value; the old value if it changes by less than half."""
-    if not abs(new - old) >= 0.5 * step * unit:  # also for NaN
+    if not 0.5 * step * unit <= abs(new - old) < math.inf or math.isinf(new / (step * unit)):  # also for NaN
         return old
     return unit * float(f"{round(new / (step * unit)) * step:.12g}")
 

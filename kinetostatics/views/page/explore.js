@@ -32,7 +32,7 @@ const LONG_NOTE = 90; // characters of a note that stands open
 export class Explore {
   // `transport` sends requests; `address` keeps what is shown, {read(), write(fields)}, all texts.
   constructor(root, transport, address) {
-    Object.assign(this, { root, address, known: null, shown: null, reference: null, frozen: null, answered: null });
+    Object.assign(this, { root, address, known: null, shown: null, last: null, reference: null, frozen: null, answered: null });
     Object.assign(this, { moving: false, ready: false, described: null, presented: 0, kept: new Map(), timer: null });
     this.listeners = { known: [], changed: [], shown: [], compared: [] };
     this.requests = new Requests(transport);
@@ -189,6 +189,7 @@ export class Explore {
   // Show the present state: describe it first if it is of another structure.
   present() {
     this.presented += 1;
+    this.handles.dropped = null;
     const { state } = this, structure = keyOf({ ...state, values: {} });
     this.kept.set(state.variant, state);
     this.remember();
@@ -263,6 +264,7 @@ export class Explore {
   ownReference() { return this.variants.find(({ name }) => name === this.state.variant)?.reference ?? ""; }
 
   receive(answer, asked) {
+    if (answer.kind === "drag" && !asked.still) this.handles.dropped = null;
     if (answer.kind === "drag" && !this.follows(answer, asked)) return;
     if (keyOf({ ...answer.state, values: {} }) !== this.described) return; // of the tab before
     this.answered = answer;
@@ -294,14 +296,23 @@ export class Explore {
 
   // A state without numbers: the last machine stays as a ghost.
   refuse(answer) {
+    this.last = this.shown ?? this.last;
     this.shown = null;
     this.say(answer.problem);
     this.note([]);
     this.mechanism.ghost();
+    if (this.last?.drawing.pose !== undefined && !this.moving) this.askGhost();
     this.curves.stale();
     if (this.known) this.showFields(this.state);
     this.root.dataset.shown = answer.id;
     this.notify("shown", answer);
+  }
+
+  // All poses of the ghost, if it has one alone.
+  askGhost() {
+    this.requests.ask("look", { state: this.last.state, show: [], count: COUNT }, (answer) => {
+      if (!this.shown && !answer.problem) this.mechanism.ghost(answer);
+    });
   }
 
   showFields(state) {
@@ -325,7 +336,8 @@ export class Explore {
     this.handles?.show(index);
     if (!this.shown) return;
     this.curves.follow(this.shown.angle[index % this.shown.angle.length]);
-    if ((this.shown.drawing.pose ?? index) !== index) this.look(); // drawn in another pose alone
+    // drawn in another pose alone; a request under way brings this call again, and must not be replaced
+    if ((this.shown.drawing.pose ?? index) !== index && !this.requests.busy) this.look();
     if (!this.clock.running) this.remember();
   }
 

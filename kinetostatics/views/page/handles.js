@@ -21,7 +21,8 @@ export class Handles {
   // `ondrag(wanted)` is called at most once a frame while a point moves, `ondrop(wanted)` at its end: {handle, x, y, index,
   // snap, step}, the place and the snapping step in m at the crank angle of an index.
   constructor(drawing, { ondrag, ondrop }) {
-    Object.assign(this, { drawing, ondrag, ondrop, fields: new Map(), grips: new Map(), values: {}, index: 0, held: null });
+    Object.assign(this, { drawing, ondrag, ondrop, fields: new Map(), grips: new Map(), values: {}, index: 0 });
+    Object.assign(this, { held: null, dropped: null }); // `dropped`: {grip, place} of a drop that has no answer yet
     drawing.onview = () => this.show(this.index);
     this.layer = element("g", drawing.svg, { class: "handles" });
     this.mark = element("path", this.layer, { class: "target", d: "M-9 0H9M0 -9V9", visibility: "hidden" });
@@ -116,7 +117,7 @@ export class Handles {
     event.preventDefault(); // no text is selected
     grip.group.focus({ preventScroll: true });
     grip.group.setPointerCapture(event.pointerId);
-    const { drawing } = this, [x, y] = this.at(grip.item), listening = new AbortController();
+    const { drawing } = this, [x, y] = this.start(grip), listening = new AbortController();
     const perPixel = drawing.width / drawing.svg.getBoundingClientRect().width / drawing.scale;
     this.held = { grip, x, y, index: this.index, step: this.snap, listening };
     for (const element of [this.layer, grip.group]) element.classList.add("held");
@@ -135,11 +136,14 @@ export class Handles {
     if (!step || event.ctrlKey || event.metaKey || (this.held && !this.held.keys)) return;
     event.preventDefault();
     event.stopPropagation(); // the crank stands
-    const [x, y] = this.at(grip.item);
+    const [x, y] = this.start(grip);
     this.held ??= { grip, x, y, index: this.index, step: this.snap, keys: true };
     const times = (event.shiftKey ? 10 : 1) * (event.altKey ? 0.1 : 1) * this.snap;
     this.move(this.held.x + times * step[0], this.held.y + times * step[1], !event.altKey);
   }
+
+  // Where a movement of a point begins.
+  start(grip) { return this.dropped?.grip === grip ? this.dropped.place : this.at(grip.item); }
 
   // Ask for the point at a place: at once, or at the next frame if this one has asked.
   move(x, y, snap) {
@@ -173,11 +177,13 @@ export class Handles {
   drop() {
     cancelAnimationFrame(this.frame);
     this.frame = null;
-    const { grip, snap, listening } = this.held, { wanted } = this;
+    const { grip, x, y, snap, listening } = this.held, { wanted } = this;
     listening?.abort();
     this.held = null;
     for (const group of [this.layer, grip.group]) group.classList.remove("held");
     this.mark.setAttribute("visibility", "hidden");
-    if (snap !== undefined) this.ondrop(wanted); // it was moved
+    if (snap === undefined) return; // it was not moved
+    this.dropped = { grip, place: [x, y] };
+    this.ondrop(wanted);
   }
 }

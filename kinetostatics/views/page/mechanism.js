@@ -89,7 +89,11 @@ export class Mechanism {
     this.switches();
   }
 
-  ghost() { this.drawing.ghost(true); }
+  // The last machine as a ghost, or another one in its place.
+  ghost(shown = null) {
+    if (shown) this.drawing.update(shown.drawing, this.frame);
+    this.drawing.ghost(true);
+  }
 
   // A box to tick for each force.
   switches() {
@@ -137,7 +141,7 @@ export class Mechanism {
     const { svg } = this;
     let pin = null;
     const under = (event) => {
-      if (!this.shown) return null;
+      if (!this.shown || this.shown.drawing.pose !== undefined) return null; // a point is held
       const [x, y] = this.pixelOf(event), { joints } = this.shown.drawing, row = this.clock.index;
       return this.pins().find((name) => {
         const [pinX, pinY] = this.drawing.pixel(joints[name][2 * row], joints[name][2 * row + 1]);

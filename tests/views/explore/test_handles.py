@@ -190,6 +190,11 @@ def test_a_drag_into_a_gap_is_a_state_with_a_problem_and_leads_out_of_it(session
     assert "problem" not in session.answer(asked(state=gap["state"], x=-2.4, y=3.0))
 
 
+@every("fields", [{"x": 1e308, "y": 0.0}, {"x": -2.4, "y": 3.0, "step": 5e-324}])
+def test_numbers_too_large_to_round_leave_the_state(session, fields):
+    assert session.answer(asked(**fields))["state"]["values"].get("rocker_pivot.x") is None
+
+
 def test_impossible_numbers_leave_the_state(session):
     answer = session.answer(asked(handle="crank_length", x=-1.0, y=0.0))
     assert "greater than 0" in answer["problem"]

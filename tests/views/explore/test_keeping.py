@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -63,6 +64,28 @@ def test_a_saved_case_has_its_drives_and_their_files(tmp_path):
             assert variant.flywheel == what.variants[name].flywheel > 0
             speed = np.linspace(0.0, 160.0, 9)
             np.testing.assert_array_equal(variant.motor.torque(speed), what.variants[name].motor.torque(speed))
+
+
+FOLDERS = {"decomposed": "e\u0301 '\"", "DEL": "a\x7fb", "relative": "plain"}
+
+
+@every("name", FOLDERS)
+def test_a_motor_is_found_again_from_any_folder(tmp_path_factory, monkeypatch, name):
+    top = tmp_path_factory.mktemp("top")
+    folder = top / FOLDERS[name]
+    folder.mkdir()
+    (folder / "m\u00e9.csv").write_text("speed [rad/s], torque [N m]\n0, 800\n170, 0\n", encoding="utf-8")
+    text = CASE.path.read_text(encoding="utf-8")
+    start, end = text.index("[common.drive.motor]"), text.index("[variants.plain]")
+    own = '[common.drive.motor]\nkind = "table"\nfile = "m\u00e9.csv"\n\n'
+    (folder / "saw.toml").write_text(text[:start] + own + text[end:], encoding="utf-8")
+    monkeypatch.chdir(top)
+    case = ks.load_case(Path(FOLDERS[name]) / "saw.toml")
+    (top / "elsewhere").mkdir()
+    monkeypatch.chdir(top / "elsewhere")
+    found = kept(case, top, name="heavier")
+    saved = ks.load_case(found["path"]).variants["cam-circle"].motor
+    assert saved.torque(85.0) == case.variants["cam-circle"].motor.torque(85.0)
 
 
 STATES = {
