@@ -297,7 +297,7 @@ def _unit_text(unit):
 
 
 def _quoted(value):
-    """Text of a string, boolean, number or list, equal in TOML and JSON but for the letter DEL."""
+    """Text of a string, boolean, number or list, equal in TOML and JSON except for the letter DEL."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
