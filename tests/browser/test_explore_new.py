@@ -1,6 +1,8 @@
 """A mechanism that is built on the explore page: groups and loads are added, changed and removed."""
 
 import pytest
+
+pytest.importorskip("selenium")
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select

@@ -5,6 +5,10 @@ import subprocess
 import sys
 from contextlib import contextmanager
 
+import pytest
+
+pytest.importorskip("selenium", reason="selenium is not installed (extra: browser)")
+pytest.importorskip("tornado", reason="tornado is not installed (extra: explore)")
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
