@@ -20,7 +20,20 @@ from ..numbers.planar import minus, subtract_vectors
 from . import plausibility
 from .crank import Crank
 from .friction import friction_kind
-from .group import BEARINGS, CRANK, FRAME, GROUND, MEMBERS, RATES, RESERVED, SHAFT_TORQUE, TRAVELS, Group, Resolved
+from .group import (
+    BEARINGS,
+    CRANK,
+    EMPTY,
+    FRAME,
+    GROUND,
+    MEMBERS,
+    RATES,
+    RESERVED,
+    SHAFT_TORQUE,
+    TRAVELS,
+    Group,
+    Resolved,
+)
 from .groups import carriers
 from .kinematic_state import margin, place
 from .links import Meshing, Sliding, Turning, Wrench, present
@@ -125,7 +138,7 @@ def _table(name, doc):
         for group in mechanism.groups:
             if more := getattr(group, name):
                 found = found | more if isinstance(more, dict) else found + more
-        return found
+        return {} if found is EMPTY else found  # EMPTY cannot be pickled
 
     found = cached_property(collect)
     found.__doc__ = doc

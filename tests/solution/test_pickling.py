@@ -11,6 +11,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics import errors
 from kinetostatics.engines import numba_backend
+from kinetostatics.numbers.lazy import cached_property
 from support.every import every
 
 WAYS = {
@@ -46,6 +47,7 @@ def test_an_error_keeps_what_was_noted_on_it():
     assert pickle.loads(pickle.dumps(error)).__notes__ == ["in design 3"]
 
 
+CRANK_SLIDER = ks.crank_slider(0.1, 0.4)
 CASES = ("sawframe_2r63", "chain_unit", "mower_drive")
 
 
@@ -131,3 +133,14 @@ def test_a_case_with_a_table_of_forces_comes_back(tmp_path):
     found = pickle.loads(pickle.dumps(case))
     np.testing.assert_array_equal(found.solve("a", 36).balancing_torque, case.solve("a", 36).balancing_torque)
     assert case.files == [tmp_path / "ram.toml", tmp_path / "force.csv"]
+
+
+@pytest.mark.slow
+@every("name", list(ks.shipped_cases()))
+def test_a_machine_whose_tables_were_read_goes_to_another_process(name):
+    """A drawing reads them; a sweep by workers sends the scene."""
+    tables = [key for key, value in vars(type(CRANK_SLIDER)).items() if isinstance(value, cached_property)]
+    for variant in ks.load_case(name).variants.values():
+        for table in tables:
+            getattr(variant.mechanism, table)
+        assert len(pickle.loads(pickle.dumps(variant.scene)).mechanism.groups) == len(variant.mechanism.groups)
