@@ -85,7 +85,7 @@ class Variant:
             return None
         motor = self.table.drive.raw["motor"]
         if "file" in motor:
-            motor = motor | {"file": str((self.folder / motor["file"]).absolute())}
+            motor = motor | {"file": str(self.folder / motor["file"])}
         return self.table.drive.raw | {"motor": motor}
 
     @cached_property

@@ -197,7 +197,7 @@ def ordinary_size(arrays):
     most = max((float(np.max(row, initial=0.0)) for row in rows), default=0.0)  # NaN with a gap
     mean = sum(float(np.sum(row)) for row in rows) / max(1, sum(row.size for row in rows))
     if UNBOUNDED_RATIO * (mean - (1.0 - ORDINARY_SHARE) * most) >= most and np.isfinite(most):
-        return most  # the quantile below is at least this difference
+        return most  # without the slower quantile below, which is at least this difference
     others = []
     for values in rows:
         missing = np.isnan(values)
@@ -214,11 +214,8 @@ def ordinary_size(arrays):
     most, apart = float(finite.max()), float(np.max(others, initial=0.0))
     if 0.0 < DRAWN_RATIO * apart < most:
         return apart
-    largest, place = float(np.nanmax(sizes)), int(ORDINARY_SHARE * (finite.size - 1))
-    if UNBOUNDED_RATIO * np.partition(finite, place)[place] >= largest:
-        return most  # without the slower quantile, which is not below this value
     usual = float(np.quantile(finite, ORDINARY_SHARE))
-    return usual if 0.0 < UNBOUNDED_RATIO * usual < largest else most
+    return usual if 0.0 < UNBOUNDED_RATIO * usual < float(np.nanmax(sizes)) else most
 
 
 def hidden_beyond(limit, values):

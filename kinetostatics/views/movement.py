@@ -33,6 +33,11 @@ def drawing_of(shape):
     return _framed({"": shape})[""]
 
 
+def turning_sense(scene):
+    """Sense in which the crank plays, 1 or -1."""
+    return -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1
+
+
 def one_pose(drawing, index):
     """A drawing without all poses but one, whose index it has as `pose`."""
     chosen = slice(index, index + 1)

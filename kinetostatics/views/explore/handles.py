@@ -70,51 +70,6 @@ class Handle(NamedTuple):
     row: int = 0
 
 
-def handles(solution):
-    """All points of a solution over even crank angles that can be dragged, the more important first.
-
-    Of points that coincide each has a `row`, so that a drawing can show them side by side.
-
-    Parameters
-    ----------
-    solution : Solution
-        Of one design, over a whole period.
-
-    Returns
-    -------
-    list of Handle
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
-    >>> [handle.label for handle in handles(saw.solve(8))]
-    ['crank length', 'coupler length', 'guide angle', 'guide offset', 'mass centre of the slider']
-    """
-    return Points(solution).side_by_side()
-
-
-def dragged(solution, name, x, y, index, snap=True, step=None):
-    """Values by path that bring a point to (x, y), m, at the crank angle `index` of a solution, rounded.
-
-    With `snap` to a step, m, by default about 1/200 of the machine's size, and to 1 degree; else to 1/100 of these. A
-    number that changes by less than half a step stays, as does one without a value because the mechanism is open there.
-
-    Raises
-    ------
-    ParameterError
-        The solution has no point of that name.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> saw = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8)
-    >>> dragged(saw, "crank_length", 0.327, 0.0, 0), dragged(saw, "crank_length", 0.327, 0.0, 0, snap=False)
-    ({'crank_length': 0.33}, {'crank_length': 0.327})
-    """
-    return Points(solution).dragged(name, x, y, index, snap, step)
-
-
 def snap_step(size):
     """Snapping step of lengths for a machine of a size: 1, 2 or 5 times a power of ten, m."""
     wanted = size / STEPS_OVER_SIZE
@@ -153,9 +108,23 @@ def _words(path):
 
 
 class Points:
-    """Handles of a solution, from the dimensions of its parts and loads.
+    """Points of a solution that can be dragged, from the dimensions of its parts and loads.
 
-    `places` are those of the numbers of its scene, if they are known.
+    Parameters
+    ----------
+    solution : Solution
+        Of one design, at even crank angles over a whole period.
+    places : dict, optional
+        Those of the numbers of its scene, if they are known.
+
+    Examples
+    --------
+    >>> import kinetostatics as ks
+    >>> points = Points(ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8))
+    >>> [handle.label for handle in points.side_by_side()]
+    ['crank length', 'coupler length', 'guide angle', 'guide offset', 'mass centre of the slider']
+    >>> points.dragged("crank_length", 0.327, 0.0, 0), points.dragged("crank_length", 0.327, 0.0, 0, snap=False)
+    ({'crank_length': 0.33}, {'crank_length': 0.327})
     """
 
     def __init__(self, solution, places=None):
@@ -180,7 +149,12 @@ class Points:
         return {"handles": found, "snap": snap_step(self.size)}
 
     def dragged(self, name, x, y, index, snap=True, step=None):
-        """Values by path that bring a point to a place, see `dragged`."""
+        """Values by path that bring a point to (x, y), m, at the crank angle `index` of the solution, rounded.
+
+        With `snap` to a step, m, by default about 1/200 of the machine's size, and to 1 degree; else to 1/100 of these.
+        A number that changes by less than half a step stays, as does one without a value in a gap. `ParameterError` if
+        there is no point of that name.
+        """
         handle = next((handle for handle in self.all if handle.name == name), None)
         if handle is None:
             raise ParameterError(f"there is no point {checks.shown(name)} to drag")
@@ -210,7 +184,7 @@ class Points:
         return found + [self.mass_centre(link) for link, body in self.mechanism.links.items() if body.mass != 0]
 
     def side_by_side(self):
-        """All handles, with the rows of those that coincide."""
+        """All handles, the more important first; of points that coincide each has a `row`, to be shown side by side."""
         return _in_rows(self.all, self.crank_pins(), CLOSE * self.size)
 
     def crank_pins(self):

@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import drawn_limit, ordinary_size, unit_for
-from ..movement import drawing_of, one_pose
+from ..movement import drawing_of, one_pose, turning_sense
 from ..report.tables import KINDS
 from . import answers, fields, groups, keeping, running, searching
 from .handles import Points
@@ -262,19 +262,18 @@ def count_of(request):
 def look(session, request):
     """The machine of a state over the period: its drawing and the quantities to show."""
     scene = session.scene(request["state"])
-    show = request.get("show", [])
-    require_names(show)
     solution = scene.solve(count_of(request))
     points = Points(solution, scene.places)
     session.looked = scene, points
     known = of_scene(scene)
+    show = [name for name in dict.fromkeys(request.get("show", ())) if name in known]
     return {
         "values": {path: value for path, value in scene.parameters.items() if np.ndim(value) == 0},
         "drawing": drawing_of(points.shape),
         "angle": np.degrees(solution.crank_angle),
         "period": float(np.degrees(scene.period)),
-        "sense": -1 if np.any(np.asarray(scene.crank_speed) < 0) else 1,
-        "quantities": {name: curve(solution, known[name]) for name in dict.fromkeys(show) if name in known},
+        "sense": turning_sense(scene),
+        "quantities": {name: curve(solution, known[name]) for name in show},
         **points.data(),
     }
 

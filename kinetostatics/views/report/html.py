@@ -23,7 +23,7 @@ from ...errors import FileError, MissingLibraryError
 from ...numbers.formatting import pretty_unit
 from ...version import __version__
 from ..canvas import display_unit, grouped
-from ..movement import movements
+from ..movement import movements, turning_sense
 from ..page import bundle, packed, source
 from . import tables
 from .tables import readings
@@ -170,7 +170,7 @@ def _turning(subject):
         "counts": [machine.solution.crank_angle.size for machine in machines],
         "between": [np.degrees(machine.between.crank_angle) for machine in machines],
         "start": int(np.nanargmax(torque)) if np.isfinite(torque).any() else 0,
-        "sense": -1 if np.any(np.asarray(first.crank_speed) < 0) else 1,
+        "sense": turning_sense(first),
     }
 
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.casefile.reading import shipped_cases
-from kinetostatics.views.explore.handles import dragged, handles, snap_step
+from kinetostatics.views.explore.handles import Points, snap_step
 from kinetostatics.views.explore.session import Session
 from kinetostatics.views.strokes import Shape
 from support.case_files import shipped
@@ -37,6 +37,10 @@ GASSY = ks.Scene(
     10.0,
     loads=(ks.Spring(1e3, 0.2), ks.GasSpring(1e-3, 2e-4, 2e5, at=0.15)),
 )
+
+
+def handles(solution):
+    return Points(solution).side_by_side()
 
 
 def numbers(scene, handle):
@@ -126,7 +130,7 @@ def test_rounding_keeps_numbers_readable_and_those_that_hardly_change():
     ]
     assert snap_step(Shape(saw).size) == 0.01
     for name, (x, y), index, snap, expected in rows:
-        assert dragged(saw, name, x, y, index, snap) == {name: expected}, name
+        assert Points(saw).dragged(name, x, y, index, snap) == {name: expected}, name
 
 
 @pytest.mark.parametrize(("size", "step"), [(2.6, 0.01), (0.3, 0.002), (1.0, 0.005), (200.0, 1.0), (2e-4, 1e-6)])
@@ -135,7 +139,7 @@ def test_steps_of_lengths_suit_the_machine(size, step):
 
 
 def test_a_guide_through_two_points_stays_a_unit_vector():
-    turned = dragged(GASSY.solve(ANGLES), "exact.x", 0.3, 0.1, 0)
+    turned = Points(GASSY.solve(ANGLES)).dragged("exact.x", 0.3, 0.1, 0)
     angle = math.degrees(math.atan2(turned["exact.y"], turned["exact.x"]))
     assert angle == pytest.approx(round(angle), abs=1e-9)
     assert GASSY.varied(turned).solve(ANGLES).position("B").shape == (2, ANGLES)
@@ -151,11 +155,11 @@ def test_a_point_in_a_gap_stays_and_points_with_known_starts_can_be_dragged_out_
     open_scene = ks.Scene(ks.four_bar(0.1, 0.2, 0.15, rocker_pivot=(0.5, 0.0), coupler=LINK), 10.0)
     solution = open_scene.solve(ANGLES, on_gap="nan")
     assert np.isnan(solution.position("B")).all()
-    assert dragged(solution, "coupler.centre.along", 0.3, 0.1, 0) == {
+    assert Points(solution).dragged("coupler.centre.along", 0.3, 0.1, 0) == {
         "coupler.centre.along": 0.03,
         "coupler.centre.across": 0.01,
     }
-    assert dragged(solution, "rocker_pivot.x", 0.25, 0.0, 0) == {"rocker_pivot.x": 0.25, "rocker_pivot.y": 0.0}
+    assert Points(solution).dragged("rocker_pivot.x", 0.25, 0.0, 0) == {"rocker_pivot.x": 0.25, "rocker_pivot.y": 0.0}
 
 
 # Requests of a page
