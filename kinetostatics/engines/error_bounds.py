@@ -102,18 +102,10 @@ EXACT = Error(0.0, None)
 class ErrorBounds:
     """Running bounds for the nodes of a graph, each computed once.
 
-    Parameters
-    ----------
-    graph : Graph
-    inputs : mapping of Node to function
-        ``input(bounds) -> Error`` of inputs that are not exact.
-    arithmetic : Arithmetic
-    given : ErrorBounds, optional
-        Bounds for inputs and for values that the design fixes, in double.
-    weight : float
-        Factor on terms of second order: 1 for a bound; 0 leaves them out, with all doubts on signs and guards.
-    cuts : function
-        ``cuts(node, error)``, whether the users of a node take it as exact; `cut` then has its bound in units.
+    ``inputs[node](bounds)`` is the `Error` of an input that is not exact. `given` has bounds, in double, for inputs and
+    for values that the design fixes. `weight` is a factor on terms of second order: 1 for a bound; 0 leaves them out,
+    with all doubts on signs and guards. Where ``cuts(node, error)`` is true, users of a node take it as exact; `cut`
+    then has its bound in units.
     """
 
     def __init__(self, graph, inputs=None, arithmetic=OWN, given=None, weight=1.0, cuts=None):

@@ -151,14 +151,9 @@ class MixedPrecision:
 
 @dataclass(frozen=True)
 class Backend:
-    """An engine with its precision and device.
+    """An engine ("numpy", "compiled" or "jax") with its precision and device.
 
-    Attributes
-    ----------
-    engine : "numpy", "compiled" or "jax"
-    precision : "double" or "single"
-    platform : str or None
-        Platform of the device for JAX; None for its first device.
+    The precision is "double" or "single"; `platform` is that of the device for JAX, None for its first device.
     """
 
     engine: str

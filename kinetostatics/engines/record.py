@@ -75,20 +75,11 @@ WITHOUT_GAPS = ("closure", *FRICTION_CHECKS)
 
 
 class Table(NamedTuple):
-    """Rows of values that are computed at the crank angles before the program runs.
+    """Rows of values that ``compute(motion, leaves)`` gives at the crank angles before the program runs.
 
-    Attributes
-    ----------
-    rows : range
-        Numbers of its rows.
-    compute : function
-        ``compute(motion, leaves) -> rows`` for the motion and leaves of any scene of the structure.
-    moved_by : str
-        User code whose dependence on parameters is not recorded; "" if there is none.
-    names : tuple of (str, int, str)
-        Name of each row, its order of derivative by the crank angle, its unit.
-    of : str or int
-        The cam, or the number of the load, that uses it.
+    `rows` are their numbers, `names` the name, the order of derivative by the crank angle and the unit of each.
+    `moved_by` is the user code whose dependence on parameters is not recorded; "" if there is none. `of` is the cam, or
+    the number of the load, that uses them.
     """
 
     rows: range
@@ -106,20 +97,9 @@ class Table(NamedTuple):
 class Recording:
     """The arithmetic of some quantities for all scenes of one structure.
 
-    Attributes
-    ----------
-    quantities : tuple of str
-    outputs : tuple of Node or float
-        Results, components of a vector one after the other.
-    widths : tuple of int
-        Rows of each quantity: 1 for a scalar, 2 for a vector, one per group for the closure.
-    vectors : tuple of bool
-    parameters : tuple of Node
-        One for each number of a scene, in the order of its leaves.
-    tables : tuple of Table
-    graph : Graph
-    inputs : mapping of Node to function
-        ``input(bounds) -> Error`` of inputs that are not exact, as for `ErrorBounds`.
+    `outputs` are nodes or numbers, components of a vector one after the other. `widths` are the rows of each quantity:
+    1 for a scalar, 2 for a vector, one per group for the closure. `parameters` has a node for each number of a scene,
+    in the order of its leaves; `inputs` are those of `ErrorBounds`.
     """
 
     quantities: tuple[str, ...]
@@ -156,18 +136,10 @@ class Recording:
 
 
 def record(structure, quantities, sizes=False, way=None) -> Recording:
-    """Record the arithmetic of some quantities.
+    """Record the arithmetic of some quantities of a structure, see `parameter_tree.flatten`.
 
-    Parameters
-    ----------
-    structure : tuple
-        Structure of a mechanism, crank speed, crank acceleration and loads, see `parameter_tree.flatten`.
-    quantities : sequence of str or None
-        Names, see `quantities.components`; None: closure and all results of the groups.
-    sizes : bool
-        Record the magnitude of a vector instead of its components.
-    way : function, optional
-        Other method for the positions, see `Dynamics`.
+    `quantities` are names as for `quantities.components`; None: closure and all results of the groups. `sizes` records
+    magnitudes of vectors instead of their components; `way` is another method for the positions, see `Dynamics`.
     """
     recorder = Recorder(structure, way, SimplifiedGraph())
     if quantities is None:

@@ -21,17 +21,10 @@ MIN_SHARE = 0.25
 
 
 def shared_loop(program, numbers, angle, tables, count):
-    """Compiled loop for designs that differ in some numbers, and its tables.
+    """Compiled loop for `count` designs that differ in some numbers, and its tables.
 
-    Parameters
-    ----------
-    program : Program
-    numbers : sequence of float or array (designs, 1)
-        Numbers of its recording; arrays vary.
-    angle : array (1 or designs, N)
-    tables : array (T, 1 or designs, N)
-    count : int
-        Number of designs.
+    Numbers of the recording are floats or, where they vary, arrays (designs, 1); angles are (1 or designs, N), tables
+    (T, 1 or designs, N).
     """
     if count * angle.shape[1] < MIN_SHARED_VALUES or len(angle) > 1 or tables.shape[1] > 1:
         return program.loop, tables

@@ -16,19 +16,9 @@ GOLDEN_SECTION = 2.0 - (0.5 + 0.5 * 5.0**0.5)
 def find_roots(function, low, high, tolerance=4 * TINY):
     """Zero of a function in each bracket; NaN where its values at both ends have one sign.
 
-    Parameters
-    ----------
-    function : function
-        From arguments (K,) and the places of their brackets (K,) to values (K,).
-    low, high : array
-        Ends of the brackets, of one shape.
-    tolerance : float
-        Width of a sufficiently narrow bracket.
-
-    References
-    ----------
-    T. R. Chandrupatla: A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without
-    using derivatives. Advances in Engineering Software 28 (1997), 145-149.
+    ``function(x, places)`` takes arguments (K,) and the places of their brackets. `tolerance` is the width of a narrow
+    bracket. T. R. Chandrupatla: A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
+    without using derivatives. Advances in Engineering Software 28 (1997), 145-149.
     """
     shape, a, b = np.shape(low), *(np.ravel(end).astype(float) for end in (low, high))
     found, place = np.full(a.size, np.nan), np.arange(a.size)
@@ -69,21 +59,10 @@ def _interpolated(a, b, c, at_a, at_b, at_c):
 def find_minima(function, brackets, relative=EPSILON**0.5, tiny=TINY):
     """Argument of the least value of a function in each bracket; NaN where its middle value is not the least.
 
-    Parameters
-    ----------
-    function : function
-        From arguments (K,) and the places of their brackets (K,) to values (K,).
-    brackets : array (3, K)
-        Arguments in rising order.
-    relative : float
-        Width of a sufficiently narrow bracket, relative to the argument.
-    tiny : float
-        The same for the absolute width, and for the difference of the values.
-
-    References
-    ----------
-    T. R. Chandrupatla: An efficient quadratic fit-sectioning algorithm for minimization without derivatives. Computer
-    Methods in Applied Mechanics and Engineering 152 (1998), 211-217.
+    `brackets` (3, K) are arguments in rising order; the function is as for `find_roots`. A bracket is narrow at the
+    width `relative` times the argument, plus `tiny`; `tiny` also limits the difference of the values. T. R.
+    Chandrupatla: An efficient quadratic fit-sectioning algorithm for minimization without derivatives. Computer Methods
+    in Applied Mechanics and Engineering 152 (1998), 211-217.
     """
     x = np.array(brackets, dtype=float)
     found, place = np.full(x.shape[1], np.nan), np.arange(x.shape[1])

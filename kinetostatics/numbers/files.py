@@ -60,26 +60,11 @@ def read_text(path, largest):
 
 
 def read_columns(path, wanted):
-    """Columns of a CSV file in SI.
+    """Columns of a CSV file in SI, arrays in the order of `wanted`, a dict of column name to SI unit.
 
-    Parameters
-    ----------
-    path : path
-        Its first line names each column with its unit: ``angle [deg], radius [mm]``. Commas separate the columns,
-        numbers have a decimal point, and every row has as many fields as the heading; empty lines are skipped.
-        Comments, lines that begin with ``#``, may precede the heading. `formatting.parse_user_heading` reads the names.
-    wanted : dict
-        Column name to SI unit.
-
-    Returns
-    -------
-    list of arrays, in the order wanted
-
-    Raises
-    ------
-    CaseError
-        The file cannot be read, or a comment follows the heading. A column is missing, appears twice, has no unit or a
-        wrong unit. A row has another length, or a cell is not a number.
+    The first line names each column with its unit: ``angle [deg], radius [mm]``; see `formatting.parse_user_heading`.
+    Commas separate the columns, numbers have a decimal point, and every row has as many fields as the heading. Empty
+    lines are skipped; comments, lines that begin with ``#``, may precede the heading. `CaseError` for any other file.
     """
     headings, rows = _rows(path)
     for line, cells in rows:
@@ -230,13 +215,7 @@ def _copy_permissions(path, before):
 def write_problem(path, *, inputs=(), endings=()):
     """Reason why a result cannot be written to this file, or None; call it before a long calculation.
 
-    Parameters
-    ----------
-    path : path
-    inputs : sequence of paths
-        Files that are read, so must not be replaced.
-    endings : sequence of str
-        Allowed endings; pipes and devices need none.
+    `inputs` are files that are read, so must not be replaced. `endings` are allowed; pipes and devices need none.
     """
     if not isinstance(path, str | os.PathLike):
         return f"{path!r} is no name of a file: give a text or a path"

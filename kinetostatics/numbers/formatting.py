@@ -32,17 +32,9 @@ _ROUND_BRACKETS = re.compile(r"(.*?)\s*\(([^()]*)\)")
 
 
 def number(value, digits=DIGITS, bound=0.0, infinity="inf"):
-    """A number as text; "" for NaN, a text unchanged.
+    """A number as text, with at most `DIGITS` significant digits; "" for NaN, a text unchanged.
 
-    Parameters
-    ----------
-    value : float or str
-    digits : int
-        Significant digits, at most `DIGITS`.
-    bound : float
-        Bound on its error: no digit below the first digit of the bound is shown, and a number within it is "0".
-    infinity : str
-        Sign for infinity.
+    No digit below the first digit of the `bound` on its error is shown, and a number within it is "0".
     """
     if isinstance(value, str):
         return value
@@ -170,19 +162,9 @@ def parse_user_heading(text):
 def si_columns(columns, known=None, unknown=None):
     """Name and factor to SI of each column of a table of designs, and their faults.
 
-    Parameters
-    ----------
-    columns : sequence of str
-        Names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI.
-    known : mapping of name to SI unit, optional
-        Numbers that can vary; without it any name and unit is allowed.
-    unknown : function, optional
-        From a name that is not known to a sentence.
-
-    Returns
-    -------
-    columns : tuple of (column, name, factor)
-    problems : list of str
+    `columns` are names, with the unit in brackets ("spring.stiffness [kN/m]") or none for SI. `known` maps the numbers
+    that can vary to their SI units; without it any name and unit is allowed. ``unknown(name)`` gives the fault of a
+    name that is not known. Returns tuples of (column, name, factor), and a list of texts.
     """
     found: dict[str, tuple[str, str, float]] = {}
     problems = []

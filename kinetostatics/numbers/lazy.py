@@ -41,11 +41,7 @@ def _stub(package):
 def public_name(package, name, otherwise=lambda name: ""):
     """Object of a public name of a package, loaded from the module in its stub; for ``"__all__"`` the names.
 
-    Parameters
-    ----------
-    package, name : str
-    otherwise : function
-        From a name without a near public name to the end of the error message.
+    ``otherwise(name)`` ends the error message for a name without a near public name.
     """
     missing = f"module {package!r} has no attribute {name!r}"
     if name.startswith("_") and name != "__all__":  # Python itself asks for these

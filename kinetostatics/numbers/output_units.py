@@ -121,10 +121,7 @@ def shown_in(units):
 def output_units(units, owner="units"):
     """`OutputUnits` of a user's mapping of dimension to unit; None is SI.
 
-    Raises
-    ------
-    ParameterError
-        An unknown dimension, or a unit that does not measure it.
+    `ParameterError` for an unknown dimension, or a unit that does not measure it.
     """
     if units is None or isinstance(units, OutputUnits):
         return units or SI

@@ -40,10 +40,7 @@ class Panels:
     def of(cls, function, period, breaks=()):
         """Panels of a function of arrays; `breaks` are the known kinks.
 
-        Raises
-        ------
-        ParameterError
-            It is not smooth between finitely many kinks.
+        `ParameterError` if it is not smooth between finitely many kinks.
         """
         edges = np.unique([*np.linspace(0.0, period, INITIAL_PANELS + 1), *np.mod(breaks, period)])
         found, rough = _refine(function, edges)

@@ -26,16 +26,11 @@ class SignChanges(NamedTuple):
 
 
 def sign_changes(function, period, samples):
-    """Sign changes of functions, a `SignChanges`.
+    """Sign changes of functions over a period, a `SignChanges`.
 
-    Parameters
-    ----------
-    function : function
-        From angles (1 or designs, N) to a sequence of arrays that broadcast with them: one for each function.
-    period : float
-    samples : int or array
-        Angles over the period, rising, or their number. Between two of them each function changes its sign once at
-        most, or twice where its size has a minimum.
+    ``function(angles)`` takes angles (1 or designs, N) and returns a sequence of arrays that broadcast with them, one
+    for each function. `samples` are rising angles over the period, or their number. Between two of them each function
+    changes its sign once at most, or twice where its size has a minimum.
     """
     start = SAMPLE_OFFSET + np.linspace(0.0, period, samples, endpoint=False) if np.ndim(samples) == 0 else samples
     angle = np.append(start, start[0] + period)[None]

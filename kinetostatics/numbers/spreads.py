@@ -128,14 +128,10 @@ def parse_grid(given):
 
 
 class Spread(NamedTuple):
-    """Distribution of a number.
+    """Distribution of a number: its kind ("uniform", "triangular" or "normal"), numbers and their unit.
 
-    Attributes
-    ----------
-    kind : "uniform", "triangular" or "normal"
-    numbers : list of float
-        Low, likeliest and high value of "triangular"; low and high of "uniform"; mean and standard deviation.
-    unit : str
+    The numbers are low, likeliest and high value of "triangular", low and high of "uniform", mean and standard
+    deviation of "normal".
     """
 
     kind: str

@@ -79,23 +79,9 @@ def _registry():
 
 
 def to_si(text, unit):
-    """Value in SI of a text such as "300 mm".
+    """Value in an SI unit of a text of a number and its unit, such as "300 mm".
 
-    Parameters
-    ----------
-    text : str
-        A number and its unit.
-    unit : str
-        SI unit of the result.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        The text has no number or no unit, or the unit is unknown or of another dimension.
+    `ValueError` if the text has no number or no unit, or the unit is unknown or of another dimension.
     """
     readable = isinstance(text, str) and len(text) <= MAX_TEXT_LENGTH
     found = _NUMBER_AND_UNIT.fullmatch(text) if readable else None

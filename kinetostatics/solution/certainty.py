@@ -107,16 +107,9 @@ def _codes(count):
 def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None:
     """Places where the second order, by differences, is not small; None if it is small everywhere.
 
-    For many inputs, sums of all products of two are computed before each product. Their signs prevent that two products
-    cancel in every sum.
-
-    Parameters
-    ----------
-    change : function
-        ``change(signs)`` gives the change of the values, (components, ..., N), with inputs by path larger, 1, or
-        smaller, -1, by their uncertainty.
-    angle, first, rounding
-        As for `large_second_order`.
+    ``change(signs)`` gives the change of the values, (components, ..., N), with inputs by path larger, 1, or smaller,
+    -1, by their uncertainty. For many inputs, sums of all products of two are computed before each product. Their signs
+    prevent that two products cancel in every sum. The other arguments are those of `large_second_order`.
     """
     paths = tuple(first)
     with np.errstate(all="ignore"):
@@ -140,14 +133,8 @@ def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None
 def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | None:
     """Places where the second order is not small relative to the first order and rounding; None if there are none.
 
-    Parameters
-    ----------
-    angle : array (..., N)
-    first : dict of path to array (components, ..., N)
-    second : dict of tuple of paths to array (components, ..., N)
-        1/2 f_ii u_i^2 by (path,), and f_ij u_i u_j by (path, other).
-    rounding : array (components, ..., N)
-        Bound on the rounding of values.
+    `first` has arrays (components, ..., N) by path. `second` has 1/2 f_ii u_i^2 by (path,) and f_ij u_i u_j by (path,
+    other); `rounding` is a bound on the rounding of values.
     """
     terms = np.array(list(second.values()))
     squares = np.array([len(paths) == 1 for paths in second])

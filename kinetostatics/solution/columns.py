@@ -14,14 +14,8 @@ ORDER = ("rate", "reaction", "force", "friction", "contact", "whole", "slider", 
 class Columns(NamedTuple):
     """Columns of a quantity: one, or two of a vector.
 
-    Attributes
-    ----------
-    headings : tuple of str
-        With the unit: "reaction_O_x [N]".
-    names : tuple of str
-        For ``s[...]``: without the unit if nothing else could be meant, which of "O_x" is a reaction.
-    read : function
-        From a solution to values, (..., N), of a vector (2, ..., N).
+    `headings` have the unit: "reaction_O_x [N]". `names`, for ``s[...]``, lack it if nothing else could be meant, which
+    of "O_x" is a reaction. ``read(solution)`` gives values, (..., N), of a vector (2, ..., N).
     """
 
     headings: tuple[str, ...]

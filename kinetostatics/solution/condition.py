@@ -54,17 +54,11 @@ DIFFERENCE_STEP = 6e-6
 def condition(solution, points=None, reactions=None):
     """Bound of the magnification at each crank angle, (M,), NaN where the mechanism does not close.
 
-    It is infinite where rounding of lengths or crank angle may keep the mechanism from closing. Arrays of another
-    library than NumPy raise a `NotGivenError`; a group that cannot be recorded causes a `ConditionWarning`.
-
-    Parameters
-    ----------
-    solution : Dynamics
-    points : array of int (M,), optional
-        Places in the flattened shape of the solution; default all.
-    reactions : bool, optional
-        Whether reactions count; by default where no change points are passed, because reactions grow without bound
-        there. They are compared with the largest value that they have reached.
+    It is infinite where rounding of lengths or crank angle may keep the mechanism from closing. `points` (M,) are
+    places in the flattened shape of the solution, a `Dynamics`; default all. By default `reactions` count where no
+    change points are passed, because they grow without bound there; they are compared with the largest value that they
+    have reached. Arrays of another library than NumPy raise a `NotGivenError`; a group that cannot be recorded causes a
+    `ConditionWarning`.
     """
     points = np.arange(math.prod(solution.shape)) if points is None else np.asarray(points)
     reactions = not solution.mechanism.passes if reactions is None else reactions

@@ -41,16 +41,10 @@ def quantity_names(outputs):
 
 
 class PiecewiseTurns(NamedTuple):
-    """Turns of all designs of a scene, split at their kinks.
+    """Turns of all designs of a scene, split at their kinks into `pieces`.
 
-    Attributes
-    ----------
-    scene : Scene
-    pieces : Pieces
-        Of all designs, at the start.
-    goal : float
-        Largest error of an output, relative to the largest value of its quantity.
-    engine : "numpy" or "compiled"
+    `goal` is the largest error of an output, relative to the largest value of its quantity; the engine is "numpy" or
+    "compiled".
     """
 
     scene: Any

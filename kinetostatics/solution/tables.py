@@ -22,14 +22,9 @@ from .parameters import Parameters
 
 
 def solution_frame(solution, units=None):
-    """One row for each crank angle (and design), units in the column names, as a pandas DataFrame.
+    """One row for each crank angle (and design), units in the column names, as a pandas DataFrame; see `in_units`.
 
-    `units` is a dict of dimension to unit as of `in_units`.
-
-    Warns
-    -----
-    ConditionWarning
-        Rates and forces have no correct digit at some of the crank angles.
+    Warns where rates and forces have no correct digit at some of the crank angles.
     """
     import pandas as pd
 

@@ -30,18 +30,8 @@ from .values import (
 class PlausibleRange(NamedTuple):
     """Plausible magnitudes of a nonzero number; a number outside has probably the wrong unit.
 
-    Attributes
-    ----------
-    most, least : float
-        Limits in the SI unit, or in lengths of the longest link.
-    advice : str
-        Question of the hint.
-    factor : float
-        To SI from the unit that was probably meant; 0 if none.
-    in_links : bool
-        Whether the limits are in lengths of the longest link.
-    unit : str
-        SI unit of the number.
+    `most` and `least` are limits in the SI `unit`, or, `in_links`, in lengths of the longest link. `advice` is the
+    question of the hint. `factor` converts to SI from the unit that was probably meant; 0 if there is none.
     """
 
     most: float
