@@ -51,23 +51,13 @@ SEED = 2.0**900
 class Arithmetic(NamedTuple):
     """Properties of a floating-point arithmetic.
 
-    Attributes
-    ----------
-    dtype : type
-    unit : float
-        Largest relative error of one rounding.
-    safe : float
-        Factor on bounds for terms of second order, over all operations in a row.
-    dust : float or None
-        Underflow of one operation, in `unit`; None if nothing underflows.
-    ulp : float
-        Largest relative error of sin, cos, atan, exp and log, in `unit`; tests check all engines.
-    limit : float
-        Half of the largest power of two.
-    as_recorded : bool
-        Whether the recorded operations run in order in IEEE double precision. Otherwise a compiler may fuse products
-        with sums and flush small results to zero, inputs are rounded once, and bounds are computed beside values in
-        double.
+    `unit` is the largest relative error of one rounding, `safe` a factor on bounds for terms of second order, over all
+    operations in a row. `dust` is the underflow of one operation, in units; None if nothing underflows. `ulp` is the
+    largest relative error of sin, cos, atan, exp and log, in units; tests check all engines. `limit` is half of the
+    largest power of two.
+
+    `as_recorded`: the recorded operations run in order in IEEE double precision. Otherwise a compiler may fuse products
+    with sums and flush small results to zero, inputs are rounded once, and bounds are computed beside values in double.
     """
 
     dtype: Any

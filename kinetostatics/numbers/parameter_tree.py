@@ -58,15 +58,9 @@ class Axis(tuple):
 class Leaves:
     """Leaves of an item, in the order of its structure.
 
-    Attributes
-    ----------
-    numbers : list of float or array (..., 1)
-    tables : list of array
-        With a value for each crank angle.
-    parts : list
-        Parts that declare `TABULATED`, as sampled cams do: they are evaluated beforehand, not recorded.
-    lasting : bool
-        Whether structure and leaves are complete; False with user objects that may change unnoticed.
+    `numbers` are floats or arrays (..., 1), `tables` arrays with a value for each crank angle. `parts` declare
+    `TABULATED`, as sampled cams do: they are evaluated beforehand, not recorded. `lasting`: structure and leaves are
+    complete; False with user objects that may change unnoticed.
     """
 
     def __init__(self):
@@ -368,14 +362,6 @@ def come_from_one_class(kind, name, *others):
     """Whether `name` comes from the same class as the nearest definition of one of `others`.
 
     A subclass that overrides `push` alone makes an inherited `rate` wrong.
-
-    >>> class Spring:
-    ...     def push(self): ...
-    ...     def rate(self): ...
-    >>> class Stop(Spring):
-    ...     def push(self): ...
-    >>> come_from_one_class(Spring, "rate", "push"), come_from_one_class(Stop, "rate", "push")
-    (True, False)
     """
     giving = (vars(one) for one in kind.__mro__ if not vars(one).keys().isdisjoint(others))
     return name in next(giving, ())

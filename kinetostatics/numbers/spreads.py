@@ -176,7 +176,8 @@ def parse_spread(given):
     """`Spread` of a text or quantities; `ValueError` for any other value."""
     spread = Spread(*_parts(given))
     if spread.kind != "normal":
-        _require_rising(spread.numbers)
+        if spread.numbers[0] >= spread.numbers[-1] or sorted(spread.numbers) != spread.numbers:
+            raise ValueError("the values must rise")
     elif spread.numbers[1] <= 0:
         raise ValueError("the standard deviation must be greater than 0")
     return spread
@@ -215,12 +216,6 @@ def _checked_unit(unit):
     """The unit, if it is one."""
     base_factor(unit)
     return unit
-
-
-def _require_rising(values):
-    if values[0] >= values[-1] or sorted(values) != values:
-        raise ValueError("the values must rise")
-    return values
 
 
 def _numbers(*texts):

@@ -14,8 +14,6 @@ import unicodedata
 from fractions import Fraction
 from functools import cache, partial
 
-import numpy as np
-
 NUMBER = r"(?:[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)"
 """Regular expression of a number in case files, tables and spreads."""
 MAX_TEXT_LENGTH = 200
@@ -257,16 +255,12 @@ def _readings(text):
 
 
 DIMENSIONLESS = (0.0, 0.0, 0.0)
-_POWER = re.compile(r"([A-Za-z]+)(?:\*\*|\^)?(\d*)")
 
 
 def dimension(unit):
     """Powers of m, kg and s of a unit such as "N*m*s/rad" or "m/s2"."""
-    found = np.zeros(3)
-    for over, part in enumerate(unit.split("/")):
-        for base, power in _POWER.findall(part):
-            found += (-1 if over else 1) * int(power or 1) * np.array(_POWERS.get(base, DIMENSIONLESS)[:3])
-    return tuple(found.tolist())
+    powers = _base(unit, unit)[1] if unit else {}
+    return tuple(float(powers.get(base, 0)) for base in BASES[:3])
 
 
 UNIT_NAMES = {

@@ -7,6 +7,7 @@ true for any ideal constraint). All errors are relative to the largest value.
 """
 
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,6 +41,7 @@ ANGLE_STEP = 2.0**-8
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 """Weights of a central difference of the eighth order, with steps of `ANGLE_STEP` rad."""
 MAX_PLACES = 24
+_states = attrgetter("position", "first", "second")
 
 
 @dataclass(frozen=True, repr=False)
@@ -326,10 +328,6 @@ def _slidings(stage, placement):
 def _declared(group, name):
     """A declaration of a group; one not derived from `Group` may lack it."""
     return getattr(group, name, {})
-
-
-def _states(spot):
-    return spot.position, spot.first, spot.second
 
 
 def _velocity(placement, link, joint):

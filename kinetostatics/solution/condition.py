@@ -296,7 +296,7 @@ class _Recorded:
                 slopes |= {node: size * node + turn * after for node, after in itertools.pairwise([*nodes, third])}
             elif isinstance(table.of, int) and getattr(value_of(loads[table.of]), "over", "") == "angle":
                 slope = new()
-                self._more[slope] = partial(_slope_of_table, table.of)
+                self._more[slope] = lambda motion, place=table.of: motion.loads[place].value_now.pieces(motion)[2]
                 slopes[nodes[0]] = turn * slope
         self._single = dict.fromkeys(self._parts)
         outputs = [one for part in self._single for one in part]
@@ -334,11 +334,6 @@ def _third_derivative(name, solution):
     sides = solution.crank_angle + THIRD_STEP, solution.crank_angle - THIRD_STEP
     after, before = (cam.polar(angle, ray(angle))[2] for angle in sides)
     return (after - before) / (2.0 * THIRD_STEP)
-
-
-def _slope_of_table(place, solution):
-    """Slope of a load's table over the crank angle, (..., N)."""
-    return solution.loads[place].value_now.pieces(solution)[2]
 
 
 def _by_differences(solution):

@@ -9,12 +9,8 @@ from ..mechanics.quantities import of_scene
 class CrankshaftResults:
     """Results of a machine whose groups have planes along the crankshaft; `QuantityError` if they have none."""
 
-    dynamics: Any
-    _found: Any
-    _warn_of_growth: Any
-
     @property
-    def rocking_moment(self):
+    def rocking_moment(self: Any):
         """Moment of the inertia of all moving masses on the frame about the axes x and y through O, (2, ..., N), N m.
 
         The sum of (-z_i F_iy, z_i F_ix) over the shaking force F_i in each plane z_i, z toward the viewer. About the
@@ -29,7 +25,7 @@ class CrankshaftResults:
         """
         return self._found(ROCKING)
 
-    def shaft_torque(self, group, drive="right"):
+    def shaft_torque(self: Any, group, drive="right"):
         """Torque in the crankshaft next to the throw of a group, on the side of the drive, (..., N), N m.
 
         Positive counter-clockwise on the part toward the free end. Next to the throw nearest to the drive it is the
@@ -55,7 +51,7 @@ class CrankshaftResults:
         known = isinstance(drive, str) and drive == "right" and name in of_scene(self)
         return self._found(name) if known else self.dynamics.shaft_torque(group, drive)
 
-    def _at_bearing(self, joint, at):
+    def _at_bearing(self: Any, joint, at):
         """Reaction of a main bearing."""
         name = f"{joint} {at}"
         found = self._found(name) if name in of_scene(self) else self.dynamics.reaction(joint, at)

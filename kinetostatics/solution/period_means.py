@@ -18,8 +18,6 @@ class PeriodMeans:
     ``s.balancing_torque.mean()``, is off by about a percent where a force jumps.
     """
 
-    shape: Any
-
     @property
     def mean_torque(self):
         """Mean of the balancing torque over the crank angle of the period, its sign kept, N m; float or (designs,).
@@ -62,7 +60,7 @@ class PeriodMeans:
         return self._drive_means[2]
 
     @cached_property
-    def _drive_means(self):
+    def _drive_means(self: Any):
         """The `DriveMeans`: floats, or arrays of the designs."""
         from ..cycle.means import drive_means
 

@@ -166,15 +166,12 @@ class Shares:
             numbers = (number(row.value), number(row.peak), angle_text(np.degrees(row.angle)), number(row.rms))
             lines.append((row.source, *numbers))
         widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-        texts = ["  ".join(map(_padded, line, widths, range(len(widths)))) for line in lines]
+        rest = widths[1:]
+        texts = ["  ".join([name.ljust(widths[0]), *map(str.rjust, others, rest)]) for name, *others in lines]
         return "\n".join(filter(None, [*map(str.rstrip, texts), self.note]))
 
     def __repr__(self):
         return f"<Shares of {self.quantity}: peak {number(self.total.value)} {self.unit} of {len(self.rows)} sources>"
-
-
-def _padded(text, width, place):
-    return text.ljust(width) if place == 0 else text.rjust(width)
 
 
 def shares(solution, name) -> Shares:

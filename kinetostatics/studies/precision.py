@@ -137,22 +137,9 @@ def front(table):
 def case_study(case, folder, *, variants=None, quantities=(QUANTITY,), angles=360, progress=None, page=None):
     """Study a case and write one CSV to a folder, and charts if `page` is given; returns the paths.
 
-    Parameters
-    ----------
-    case : Case
-    folder : path
-    variants : sequence of str, optional
-        By default one of each kind of mechanism.
-    quantities : sequence of str
-    angles : int
-        Crank angles over the turn.
-    page : function, optional
-        ``page(table, path)`` draws the chart, as `views.charts.precision_page`, and returns the paths of its files.
-
-    Raises
-    ------
-    ParameterError
-        Before any calculation: the files cannot be written there, or would replace files of the case.
+    `variants` are by default one of each kind of mechanism; `angles` counts crank angles over the turn. ``page(table,
+    path)`` draws the chart, as `views.charts.precision_page`, and returns the paths of its files. `ParameterError`,
+    before any calculation, if the files cannot be written there, or would replace files of the case.
     """
     import pandas as pd
 

@@ -29,12 +29,17 @@ def _numpy(solution, quantity, setting):
     return lambda: components(_solve(solution, solution.crank_angle), quantity)
 
 
-def compiled_function(solution, quantity, setting=None):
-    """Function that computes a quantity by a compiled loop."""
-    require_numba()
+def recorded_function(backend, solution, quantity, setting=None):
+    """Function that computes a quantity by the recorded program on a `Backend`, which must be available."""
+    if backend.engine == "compiled":
+        require_numba()
     state = solution.dynamics
     made, leaves = program_of(state, (quantity,))
-    return lambda: tuple(made.run(state, leaves, compiled=True))
+    backend.device  # noqa: B018
+    return lambda: tuple(backend.run(made, state, leaves))
+
+
+compiled_function = partial(recorded_function, Backend("compiled"))
 
 
 def _with_bounds(engine, solution, quantity, setting):
@@ -59,20 +64,13 @@ def _backend_method(engine, precision):
     backend = Backend(engine, precision)
     bounding = backend if engine == "jax" else Backend("numpy", precision)
 
-    def prepare(solution, quantity, setting):
-        if engine == "compiled":
-            require_numba()
-        state = solution.dynamics
-        made, leaves = program_of(state, (quantity,))
-        backend.run(made, state, leaves)
-        return lambda: tuple(backend.run(made, state, leaves))
-
     def bound(solution, quantity):
         made, leaves = program_of(solution.dynamics, (quantity,))
         return np.linalg.norm(bounding.bounds(made, solution.dynamics, leaves), axis=0)
 
     name = {"numpy": "NumPy", "jax": "JAX"}.get(engine, engine)
     title = f"ours, {name}" + (", single precision" if precision == "single" else "")
+    prepare = partial(recorded_function, backend)
     return Method(title, prepare, ours=True, bound=bound, precision=precision, device=lambda: backend.device)
 
 

@@ -203,13 +203,8 @@ def independent(solution, quantity, indices: Iterable[int], digits=30):
     """Components of a quantity at some of a solution's crank angles, a tuple of arrays (n,) of `mpmath.mpf`.
 
     `digits` are those of the result; the working precision is much higher, because derivatives are difference
-    quotients.
-
-    Raises
-    ------
-    NotGivenError
-        A group or cam has no independent formulas, the quantity is unknown, or the iteration of friction
-        does not converge.
+    quotients. `NotGivenError` if a group or cam has no independent formulas, the quantity is unknown, or the iteration
+    of friction does not converge.
     """
     mp = require_library("mpmath").mp
     require_one_design(solution)
