@@ -84,6 +84,7 @@ def test_a_length_with_its_rest_has_twice_the_digits():
     assert 2.0**-60 < np.max(np.abs(found / length)) < 2.0**-52
 
 
+@pytest.mark.slow
 def test_single_precision_rest_is_the_rounding(jax):
     x, y = np.random.default_rng(3).uniform(0.1, 1.0, (2, 50)).astype(np.float32)
     length = np.sqrt(x * x + y * y)

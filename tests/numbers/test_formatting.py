@@ -147,6 +147,7 @@ def test_an_open_pipe_takes_what_is_written():
 # Spreads as texts
 
 
+@pytest.mark.slow
 def test_each_form_is_the_distribution_it_names():
     found = spreads.distributions(
         {"a": "600..900 kN/m", "b": "normal 712 kN/m +- 5 kN/m", "c": "triangular 690..710..740 kN/m"}

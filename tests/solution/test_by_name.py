@@ -165,6 +165,7 @@ def swept(output, path="crank_length"):
     return ks.sweep(SCENE, pd.DataFrame({path: [0.3]}), [output], progress=False)
 
 
+@pytest.mark.slow
 @every("call, meant", SUGGESTED)
 def test_a_wrong_name_is_answered_by_the_nearest(s, run, call, meant):
     with pytest.raises(ks.KinetostaticsError) as caught:

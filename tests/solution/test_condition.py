@@ -102,6 +102,7 @@ def test_groups_not_recorded_have_it_by_differences(kind, angles):
     np.testing.assert_allclose(found, exact, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_lengths_of_another_library_are_refused():
     jnp = pytest.importorskip("jax.numpy", reason="JAX is not installed (extra: grad)")
     s = unwarned(ks.crank_slider(jnp.asarray(0.3), 0.5, slider=BODY), ANGLES)

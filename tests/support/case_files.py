@@ -155,3 +155,13 @@ shipped = cache(ks.load_case)
 def variant_names(case):
     """Names of the variants of a shipped case; none is built."""
     return list(tomllib.loads(shipped_cases()[case].read_text(encoding="utf-8"))["variants"])
+
+
+def unlike_variants(case):
+    """First variant of each kind of machine in a shipped case: groups, cams, loads, friction."""
+    found = {}
+    for name, variant in shipped(case).variants.items():
+        scene = variant.scene
+        groups = [(type(group), type(getattr(group, "cam", None))) for group in scene.mechanism.groups]
+        found.setdefault((*groups, *sorted({type(load).__name__ for load in scene.loads}), *scene.friction), name)
+    return list(found.values())

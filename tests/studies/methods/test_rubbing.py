@@ -10,7 +10,7 @@ from kinetostatics.errors import NotGivenError
 from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision import certified, independent
 from kinetostatics.studies.methods.kane import equations
-from support.case_files import shipped
+from support.case_files import shipped, unlike_variants
 from support.every import every
 from support.friction_machines import FOLLOWERS, KINDS, Drawn
 
@@ -31,8 +31,10 @@ def difference(s, quantity, found):
 @every("kind", (*KINDS, *FOLLOWERS))
 def test_repeated_linear_systems_equal_the_kernels(kind):
     s = drawn(kind)
+    model = newton.model_of(s, "O")
+    q = newton.iteration(model, s.crank_angle, 6)()
     for quantity in ("balancing_torque", *s.reactions, *(name for name in s.scalars if "force" in name)):
-        assert difference(s, quantity, NEWTON.prepare(s, quantity, 6)()) < 1e-11, quantity
+        assert difference(s, quantity, newton.components(model, s, quantity, q)) < 1e-11, quantity
 
 
 @pytest.mark.slow
@@ -44,13 +46,13 @@ def test_independent_path_confirms_30_digits(flint, kind):
 
 
 @pytest.mark.slow
-@every("variant", shipped("sawframe_2r63_friction").variants)
+@every("variant", unlike_variants("sawframe_2r63_friction"))
 def test_shipped_saw_friction_is_certified(flint, variant):
     s = shipped("sawframe_2r63_friction").variants[variant].scene.solve(ANGLES)
     assert s.friction
     for quantity in ("balancing_torque", "O", "B"):
         reference = certified.certified(s, quantity)
-        for method in (NEWTON, *newton.INTEGRATION_METHODS):
+        for method in (NEWTON, *(newton.INTEGRATION_METHODS if quantity == "O" else ())):
             found = method.prepare(s, quantity, method.settings[-1])()
             assert ks.precision.relative_errors(found, reference).max() < (1e-13 if method is NEWTON else 1e-8)
 

@@ -56,8 +56,8 @@ def position_table(model, angle):
     return phi[::CONTINUATION_STEPS], *map(np.array, zip(*rows[::CONTINUATION_STEPS], strict=True))
 
 
-def _prepare(solution, quantity, iterations):
-    model, angle = model_of(solution, quantity), solution.crank_angle
+def iteration(model, angle, iterations):
+    """Function that computes positions q at crank angles by Newton iteration from those of a table."""
     phi, position, slope = position_table(model, angle)
     between = 0.5 * (phi[1:] + phi[:-1])
 
@@ -66,9 +66,15 @@ def _prepare(solution, quantity, iterations):
         q = position[nearest] + slope[nearest] * (angle - phi[nearest])[:, None]
         for _ in range(iterations):
             q = Configuration(model, q, angle).newton_step()
-        return components(model, solution, quantity, q)
+        return q
 
     return run
+
+
+def _prepare(solution, quantity, iterations):
+    model = model_of(solution, quantity)
+    positions = iteration(model, solution.crank_angle, iterations)
+    return lambda: components(model, solution, quantity, positions())
 
 
 NEWTON_METHODS = (Method("Newton iteration, global system", _prepare, "iterations", (1, 2, 3, 4, 5, 6)),)
