@@ -253,15 +253,15 @@ def test_what_is_moved_off_zero_is_in_bounds(arithmetic, unit):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-@every("engine, precision", [("numpy", "single"), ("jax", "single"), ("jax", "double")])
-def test_bounds_near_change_points_hold_or_are_inf(flint, jax, engine, precision):
+def test_bounds_near_change_points_hold_or_are_inf(flint, jax):
     links = {name: ks.Link(1.0, (0.15, 0.0), 0.01) for name in ("crank", "coupler", "rocker")}
-    backend = Backend(engine, precision)
+    backends = NUMPY, Backend("jax", "single"), Backend("jax", "double")
     for assembly in (1, "open", "crossed"):
         rhombus = ks.four_bar(0.3, 0.3, 0.3, rocker_pivot=(0.3, 0.0), assembly=assembly, **links)
         angles = [1e-30, 1e-45, 1e-100, 1e-121, -1e-150, 1e-300]
         s = ks.solve(rhombus, angles, crank_speed=3.0, loads=[ks.Gravity()], on_gap="nan")
-        assert errors(s, exact_values(s), [backend])[backend].wrong == []
+        found = errors(s, exact_values(s), backends)
+        assert [found[backend].wrong for backend in backends] == [[], [], []]
 
 
 @pytest.mark.slow

@@ -10,9 +10,7 @@ from kinetostatics.engines.codegen import (
     BY_DESIGN,
     INTO_ARRAYS,
     PLAIN,
-    buffered_source,
     line_source,
-    loop_source,
 )
 from kinetostatics.engines.engines import COMPILED, NUMPY
 from kinetostatics.engines.graph import Graph
@@ -41,18 +39,6 @@ def test_a_line_of_python_numbers_gives_the_solution(recorded):
     for place, angle in enumerate(ANGLE):
         found = scope["line"](angle, math.sin(angle), math.cos(angle), leaves.numbers, ())
         assert found == pytest.approx((S.balancing_torque[place], S.guide_force[place]), rel=1e-13, abs=1e-12)
-
-
-def test_loop_lines_assign_rows_and_buffers(recorded):
-    made, _ = recorded
-    loop, (line, buffers) = loop_source(made.outputs), buffered_source(made.outputs)
-    compile(loop, "loop", "exec")
-    compile(line, "line", "exec")
-    for place, output in enumerate(made.outputs):
-        assert f"    v{output.index} = " in loop
-        assert f"results[start + uint64({place}) * count + i] = v{output.index}\n" in loop
-        assert f"r{place}" in line
-    assert 0 < buffers < len(line.splitlines())
 
 
 def test_a_sine_of_the_crank_angle_can_be_an_output():

@@ -13,7 +13,6 @@ from kinetostatics.numbers.parameter_tree import unflatten
 from support.case_files import shipped
 
 ANGLES = np.linspace(0.1, 6.2, 7)
-SIZES = np.array([[0.9], [1.0], [1.1]])
 SIX_BAR = ks.Mechanism(
     "six-bar",
     ks.Crank(0.1, ks.Link(2.0, 0.04, 0.01)),
@@ -47,10 +46,6 @@ NAMES = (
 )
 
 
-def _fields(scene):
-    return scene.mechanism, ANGLES, scene.crank_speed, scene.crank_acceleration
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_derivatives_match_differences_of_enclosures(name):
     """At 300 bits, each number of the scene moved by 1e-30 of itself: both sides share no arithmetic of derivatives.
@@ -62,8 +57,7 @@ def test_derivatives_match_differences_of_enclosures(name):
     quantities = ("balancing_torque", *(name for name in ("O", "B", "cam_force") if name in scene.mechanism.outputs))
     program = ks.compile(scene, quantities, engine="numpy")
     found = program.derivatives(ANGLES)
-    state = Dynamics(*_fields(scene), loads=scene.loads)
-    structure, leaves = state.apart
+    structure, leaves = scene.dynamics(ANGLES).apart
     places = {path: int(number) for path, (number, _) in program._numbers.items()}
     with flint.ctx.workprec(300):
         angle = np.array([flint.arb(float(part)) for part in ANGLES], dtype=object)

@@ -40,23 +40,6 @@ def test_threads_do_not_change_machine_code_results(numba, monkeypatch):
         assert np.abs(found - s.reaction("O")).max() <= 8 * ULP * np.abs(before).max()
 
 
-def test_parameters_stand_in_a_row_for_each_design():
-    numbers = 1.0, np.array([[2.0], [3.0]]), np.array([4.0]), 5
-    assert numba_backend.parameter_table(numbers, (2,)).tolist() == [[1, 2, 4, 5], [1, 3, 4, 5]]
-    assert numba_backend.parameter_table((1.0, np.float64(2.0)), ()).tolist() == [[1, 2]]
-    assert (
-        numba_backend.parameter_table((1.0, np.array([[[6.0]], [[7.0]]])), (2, 3)).tolist()
-        == [[1, 6]] * 3 + [[1, 7]] * 3
-    )
-
-
-def test_a_table_row_may_have_an_axis_of_designs():
-    rows = [np.arange(3.0)[None], 7.0, np.arange(3.0)]
-    expected = [[[0.0, 1.0, 2.0]], [[7.0] * 3], [[0.0, 1.0, 2.0]]]
-    for shape in ((3,), (1, 3), (1, 1, 3), (5, 3)):
-        np.testing.assert_array_equal(numba_backend.row_table(rows, shape), expected)
-
-
 def test_buffers_are_aligned_for_vector_loads():
     held = [numba_backend.aligned_memory(count, 3, 8) for count in (1, 2, 5)]
     assert [part.shape for part in held] == [(1, 3, 8), (2, 3, 8), (5, 3, 8)]

@@ -10,23 +10,14 @@ from kinetostatics.engines.program import Program, program_of
 from kinetostatics.engines.record import Gaps, Recorder
 from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.machine.loads import TURN
-from kinetostatics.mechanics.dynamics import Dynamics
 from support.every import every
-from support.scenes import (
-    SCENES,
-)
-
-
-def program(solution, names, sizes=False):
-    """Program of some quantities, and a function that runs it: by NumPy unless told."""
-    made, leaves = program_of(solution.dynamics, tuple(names), sizes)
-    return made, lambda compiled=False: made.run(solution.dynamics, leaves, compiled)
+from support.scenes import SCENES
 
 
 def test_recorded_numbers_have_no_value():
     recorded = []
     force = ks.ProcessForce(lambda motion: recorded.append(motion.travel()[0]) or motion.travel())
-    program(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force), ["A"])
+    program_of(ks.solve(SCENES["plain"].mechanism, [0.1], crank_speed=1.0, loads=force).dynamics, ("A",))
     node = next(value for value in recorded if isinstance(value, Node))
     for look in (bool, float, int, lambda x: x == 0, lambda x: x != 0, lambda x: x > 0, lambda x: x <= 0.0):
         with pytest.raises(TypeError, match="is unknown while recording"):
@@ -118,12 +109,8 @@ def test_other_numbers_of_a_structure_record_nothing(counted, interpreted, name,
     second = FAMILIES[name](1.05).solve(ANGLES, engine=engine).balancing_torque
     assert counted == before
     assert not np.array_equal(first, second)
-    kernels = Dynamics(*_fields(FAMILIES[name](1.05)), loads=FAMILIES[name](1.05).loads)
+    kernels = FAMILIES[name](1.05).dynamics(ANGLES)
     assert np.allclose(second, kernels.balancing_torque, rtol=0.0, atol=1e-13 * np.abs(second).max())
-
-
-def _fields(scene):
-    return scene.mechanism, ANGLES, scene.crank_speed, scene.crank_acceleration
 
 
 @pytest.mark.parametrize("factor", [2.0, 5.0])
@@ -134,16 +121,16 @@ def test_other_constants_of_a_function_are_seen(factor):
         return factor * motion.slider_velocity
 
     found = plain(load=ks.ProcessForce(force)).solve(ANGLES).guide_force
-    kernels = Dynamics(*_fields(plain()), loads=plain(load=ks.ProcessForce(lambda m: factor * m.slider_velocity)).loads)
+    kernels = plain(load=ks.ProcessForce(lambda m: factor * m.slider_velocity)).dynamics(ANGLES)
     wanted = kernels.scalar("guide_force")
     assert np.allclose(found, wanted, rtol=0.0, atol=1e-14 * np.abs(wanted).max())
 
 
 def test_a_zero_is_absent_and_makes_another_structure():
-    one, other = (Dynamics(*_fields(plain())), Dynamics(*_fields(cam())))
+    massless = plain().mechanism.with_link("coupler", ks.Link())
+    one, other = (ks.Scene(made, 30.0).dynamics(ANGLES) for made in (plain().mechanism, massless))
     assert one.apart[0] != other.apart[0]
-    without = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 30.0)
-    assert program_of(Dynamics(*_fields(without)))[0].recording.operations < program_of(one)[0].recording.operations
+    assert program_of(other)[0].recording.operations < program_of(one)[0].recording.operations
 
 
 SHORT = ks.SliderGroup(0.04, ks.Guide.at(np.pi / 2), pin="C", label="2")

@@ -25,13 +25,7 @@ def saw(**links):
 
 def assert_as_solved(found, solution):
     for name, values in found.items():
-        expected = (
-            solution.reaction(name)
-            if name in solution.reactions
-            else solution.rate("coupler")
-            if name == "coupler_rate"
-            else getattr(solution, name)
-        )
+        expected = solution[name]
         assert values.shape == expected.shape, name
         size = np.nanmax(np.abs(expected))
         assert np.allclose(values, expected, rtol=0.0, atol=1e-14 * size, equal_nan=True), name
