@@ -62,5 +62,12 @@ def change(solution, full, quantity):
     return np.max(np.linalg.norm(found - exact, axis=0)) / np.max(np.linalg.norm(exact, axis=0))
 
 
+def error(solution, name, found):
+    """Largest error of components of a quantity, relative to its largest value."""
+    exact = components(solution, name)
+    assert [np.shape(part) for part in found] == [np.shape(part) for part in exact]
+    return float(np.max(np.abs(np.subtract(found, exact))) / (np.max(np.abs(exact)) or 1.0))
+
+
 def alone(needs):
     return {made.name: made for made in needs.alone}

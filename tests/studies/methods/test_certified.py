@@ -18,6 +18,7 @@ from kinetostatics.studies.methods.high_precision.certified import (
     independent,
     relative_errors,
 )
+from support.case_files import shipped
 from support.machines import ANGLES, KINDS, Machine
 
 pytestmark = pytest.mark.slow
@@ -110,11 +111,6 @@ SPRUNG = ("cam-circle", "cam-cosine")
 """Variants in which the spring nearly takes the load off the slider's pin."""
 
 
-@cache
-def load_case(name):
-    return ks.load_case(name)
-
-
 def worst_error(s, quantity):
     return relative_errors(components(s, quantity), certified(s, quantity, checks=2)).max()
 
@@ -122,7 +118,7 @@ def worst_error(s, quantity):
 @pytest.mark.parametrize(("case", "variant"), VARIANTS)
 def test_double_precision_is_within_5e_15(case, variant):
     """Of the pin force that springs leave, within 1e-14: two forces of 200 kN leave 12 kN."""
-    s = load_case(case).solve(variant, 360)
+    s = shipped(case).solve(variant, 360)
     names = ["balancing_torque", *s.reactions, *(["slider_acceleration"] if "slider" in s.mechanism.links else [])]
     errors = {name: float(worst_error(s, name)) for name in names}
     if variant in SPRUNG:

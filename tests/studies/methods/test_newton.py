@@ -9,10 +9,10 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.errors import NotGivenError
 from kinetostatics.machine.group import MEMBERS, Group
-from kinetostatics.mechanics import quantities
 from kinetostatics.studies.methods import running
 from kinetostatics.studies.methods.global_system import constraints, newton
-from support.machines import CLOSE, KINDS, LINKS, Machine, largest
+from support.machines import CLOSE, KINDS, LINKS, Machine
+from support.studied import error
 
 TURN = np.linspace(0.2, 0.2 + 2 * np.pi, 72, endpoint=False)
 HEAVY = ks.Link(2.0, (0.07, -0.03), 0.04)
@@ -45,13 +45,6 @@ def solved(name, angle=TURN, speed=12.0, acceleration=-30.0):
     sliders = [link for link in mechanism.links if link.startswith("slider")]
     loads = [kind for on in sliders for kind in (ks.Spring(300.0, 0.4, on), ks.ProcessForce(25.0, on))]
     return ks.solve(mechanism, angle, crank_speed=speed, crank_acceleration=acceleration, loads=[ks.Gravity(), *loads])
-
-
-def error(s, name, found):
-    """Largest error of a quantity, relative to its largest value."""
-    exact = quantities.components(s, name)
-    assert np.shape(found) == np.shape(exact)
-    return float(largest(np.subtract(found, exact)) / (largest(exact) or 1.0))
 
 
 (NEWTON,) = newton.NEWTON_METHODS

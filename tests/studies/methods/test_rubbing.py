@@ -13,6 +13,7 @@ from kinetostatics.studies.methods.kane import equations
 from support.case_files import shipped, unlike_variants
 from support.every import every
 from support.friction_machines import FOLLOWERS, KINDS, Drawn
+from support.studied import error
 
 ANGLES = np.linspace(0.0, 2 * np.pi, 24, endpoint=False) + 0.05
 (NEWTON,) = newton.NEWTON_METHODS
@@ -22,11 +23,6 @@ def drawn(kind, seed=1, angles=ANGLES):
     return Drawn(kind, seed).scene.solve(angles)
 
 
-def difference(s, quantity, found):
-    own = ks.precision.components(s, quantity)
-    return max(np.abs(a - b).max() for a, b in zip(own, found, strict=True)) / np.abs(own).max()
-
-
 @pytest.mark.slow
 @every("kind", (*KINDS, *FOLLOWERS))
 def test_repeated_linear_systems_equal_the_kernels(kind):
@@ -34,7 +30,7 @@ def test_repeated_linear_systems_equal_the_kernels(kind):
     model = newton.model_of(s, "O")
     q = newton.iteration(model, s.crank_angle, 6)()
     for quantity in ("balancing_torque", *s.reactions, *(name for name in s.scalars if "force" in name)):
-        assert difference(s, quantity, newton.components(model, s, quantity, q)) < 1e-11, quantity
+        assert error(s, quantity, newton.components(model, s, quantity, q)) < 1e-11, quantity
 
 
 @pytest.mark.slow
@@ -62,7 +58,7 @@ def test_friction_changes_the_pin_force():
     s = drawn("four-bar")
     idle = replace(s, friction=type(s.friction)())
     without, with_friction = (NEWTON.prepare(one, "B", 6)() for one in (idle, s))
-    assert difference(s, "B", without) > 1e-3 > 1e-11 > difference(s, "B", with_friction)
+    assert error(s, "B", without) > 1e-3 > 1e-11 > error(s, "B", with_friction)
 
 
 def test_what_cannot_be_found_is_refused():
