@@ -5,12 +5,12 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.derivatives import Evaluation, tangents
-from kinetostatics.engines.graph import Graph
 from kinetostatics.mechanics.dynamics import Dynamics
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers import arithmetic
 from kinetostatics.numbers.parameter_tree import unflatten
 from support.case_files import shipped
+from support.graphs import new_graph
 
 ANGLES = np.linspace(0.1, 6.2, 7)
 SIX_BAR = ks.Mechanism(
@@ -118,8 +118,7 @@ class Elementary:
 
 def along_two_directions(function):
     """Value of a function of a recorded number at 0.8, and its slopes along 1 and 2."""
-    graph = Graph()
-    x, direction = graph.parameter(0), graph.parameter(1)
+    graph, x, direction = new_graph(2)
     found = function(x)
     outputs = [found, *tangents(graph, [found], {x: direction})]
     return Evaluation(outputs)({x: np.array([0.8]), direction: np.array([[1.0], [2.0]])})

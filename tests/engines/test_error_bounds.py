@@ -36,7 +36,7 @@ from support import bounded as bounded_machines
 from support.bounded import FAMILIES, errors, over_worst, solution
 from support.case_files import shipped
 from support.every import every
-from support.graphs import COMPILED, WAYS, Case
+from support.graphs import COMPILED, WAYS, Case, new_graph
 
 FINE_TURN = np.linspace(0.0, 2 * np.pi, 180, endpoint=False) + 0.01
 """Angles enough for the worst error of a turn."""
@@ -236,8 +236,7 @@ def test_a_function_of_an_overflow_is_no_negative_bound(function):
 
 
 def test_operations_on_numbers_are_bounded_as_by_hand():
-    graph = Graph()
-    one, two = graph.parameter(0), graph.parameter(1)
+    graph, one, two = new_graph(2)
     outputs = one + two, one * two, one / two, (one * one).sqrt(), (one + two) * one
     values = bounds_of(graph, outputs, [3.0, 0.7])
     wanted = [
@@ -260,8 +259,7 @@ def test_no_bound_at_zero_divisors_and_clamped_roots():
 
 
 def test_a_reciprocal_product_is_bounded_as_a_quotient():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     below = one + other - 1.9999
     outputs = one * (1.0 / below), one / below
     product, quotient = bounds_of(graph, outputs, [1.0, 1.0])
@@ -272,8 +270,7 @@ def test_a_reciprocal_product_is_bounded_as_a_quotient():
 
 
 def test_rows_of_tables_may_be_of_any_size():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     found = ErrorBounds(graph).of([one * other * graph.row(0)])
     (bound,) = Program(None, found)._plain(0.0, 0.0, 1.0, [1e-170, 1e-170], [1e200])
     assert bound >= 1e-140  # computed 0
@@ -289,8 +286,7 @@ def test_a_bound_that_is_too_small_is_found(flint, monkeypatch):
 
 @every("tight", [False, True])
 def test_a_product_that_underflows_is_bounded(tight):
-    graph = Graph()
-    one, other, huge = map(graph.parameter, range(3))
+    graph, one, other, huge = new_graph(3)
     for scaled in (lambda square: square * (huge * huge), lambda square: square * huge * huge):
         lost = [scaled(part * part).forgiving_root(huge) for part in (one, other)]  # 0, and truly 1e-140
         found = bounds_of(graph, [lost[0] * lost[1], lost[0] + lost[1]], [1e-170, 1e-170, 1e30], tight)
@@ -299,8 +295,7 @@ def test_a_product_that_underflows_is_bounded(tight):
 
 
 def test_tight_bounds_include_errors_of_stop_gradient():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     outputs = [(one + other).held() * one, (one + other) * one]
     held, free = bounds_of(graph, outputs, [3.0, 0.7], tight=True)
     assert held == pytest.approx(free, rel=1e-8, abs=0.0)
@@ -334,8 +329,7 @@ def _worst(solution, quantity, tight):
 
 
 def test_a_length_and_its_rest_are_bounded_together():
-    graph = Graph()
-    x, y, other = map(graph.parameter, range(3))
+    graph, x, y, other = new_graph(3)
     length = (x * x + y * y).sqrt()
     lost = length_error(length, x, y)
     sums = (
@@ -357,8 +351,7 @@ def test_a_length_and_its_rest_are_bounded_together():
 
 @every("form", [lambda root, kept: root / kept, lambda root, kept: root * (1.0 / kept), lambda root, kept: kept / root])
 def test_a_guard_that_acts_is_an_error(form):
-    graph = Graph()
-    one, other, unit = map(graph.parameter, range(3))
+    graph, one, other, unit = new_graph(3)
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     share = form(root, root.kept_off_zero(unit))
     (known,), (acting,) = (bounds_of(graph, [share], [1.0, 1.0 - rest, 1e-3]) for rest in (0.5, 2.0**-40))
@@ -380,8 +373,7 @@ def test_an_undefined_root_that_cancels_has_no_bound(graph, form):
 
 @every("unit", [1e-150, 1e-297, 1e-300, 1e-305, 5e-324])
 def test_an_active_guard_leaves_only_a_large_bound(unit):
-    graph = Graph()
-    one, small = map(graph.parameter, range(2))
+    graph, one, small = new_graph(2)
     part = one * graph.angle()
     outputs = part.kept_off_zero(small), part / part.kept_off_zero(small)
     inside = 1.0 - 2.0**-10
@@ -393,8 +385,7 @@ def test_an_active_guard_leaves_only_a_large_bound(unit):
 @every("power", [1, 3, 12, 20])
 def test_pivot_errors_enlarge_errors_they_multiply(power):
     """A difference that is lost has an error of 1e-16, and what divides it one of a hundredth each time."""
-    graph = Graph()
-    one, other, tiny = map(graph.parameter, range(3))
+    graph, one, other, tiny = new_graph(3)
     over = 1.0 / (one * one - other * other)
     product = (graph.angle().cos() * one + tiny) - one  # computed 0, truly tiny
     for _ in range(power):
@@ -406,16 +397,14 @@ def test_pivot_errors_enlarge_errors_they_multiply(power):
 
 
 def test_one_over_one_plus_magnitude_uses_its_slope():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     cosine = graph.angle().cos() * one - other
     (bound, alone) = bounds_of(graph, [one / (1.0 + abs(cosine)), cosine], [100.0, 50.0])
     assert bound < 1.2 * (100.0 / 51.0**2 * (alone + 51.0 * UNIT_ROUNDOFF) + 100.0 / 51.0 * UNIT_ROUNDOFF)
 
 
 def test_a_product_with_an_offset_from_zero_counts_all():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     product = offset_from_zero(one, NEGLIGIBLE_LENGTH) * other
     for dust in (OWN.dust, None):
         (bound,) = ErrorBounds(graph, arithmetic=OWN._replace(dust=dust)).of([product])
@@ -461,8 +450,7 @@ def test_a_fold_has_a_bound_a_rounding_from_the_angle():
 
 def test_a_root_whose_square_overflows_has_no_bound():
     """One over the root is computed 0, and truly 5.8e-155."""
-    graph = Graph()
-    one, tiny, huge = map(graph.parameter, range(3))
+    graph, one, tiny, huge = new_graph(3)
     part = one / tiny / tiny / tiny * graph.angle()
     share = huge / (part + part * 1.0000001).sqrt()
     found = share, *ErrorBounds(graph).of([share]), *tight_bounds(graph, {}, [share])
@@ -547,8 +535,7 @@ def test_one_minus_cosine_is_bounded_by_sine_squared(way, function, side):
 
 @every("way", BOUNDS)
 def test_a_sign_that_may_be_the_other_is_no_known_one(way):
-    graph = Graph()
-    given, other = graph.parameter(0), graph.parameter(1)
+    graph, given, other = new_graph(2)
     angle, values = 1e-9, (0.1 + 0.2, 0.3)
     for unsure in ((given + 1.0) - (other + 1.0), graph.angle() - other):
         folded = sign(unsure) * graph.angle().cos() - 1.0
@@ -599,8 +586,7 @@ def test_an_offset_may_turn_an_unknown_sign(way, given):
 
 @every("way", BOUNDS)
 def test_a_sign_is_known_if_its_error_cannot_turn_it(way):
-    graph = Graph()
-    given = graph.parameter(0)
+    graph, given = new_graph(1)
     inputs = {given: lambda bounds: Error(4.0, None)}
     folded = sign(given - 0.3) * graph.angle().cos() - 1.0
     for value, is_known in ((0.3 + 2.0**-54, False), (0.3 + 1e-9, True)):
@@ -626,8 +612,7 @@ def test_a_sign_is_known_if_its_error_cannot_turn_it(way):
     ],
 )
 def test_zero_times_an_undefined_root_has_no_bound(kind, made):
-    graph = kind()
-    one, other, unit = map(graph.parameter, range(3))
+    graph, one, other, unit = new_graph(3, kind)
     root = (graph.angle().cos() * one - other).forgiving_root(unit)
     output = made(root, one)
     found = *ErrorBounds(graph).of([output]), *tight_bounds(graph, {}, [output])
@@ -638,8 +623,7 @@ def test_zero_times_an_undefined_root_has_no_bound(kind, made):
 
 
 def test_a_constant_of_known_parts_is_exact():
-    graph = SimplifiedGraph()
-    one, other, unit = map(graph.parameter, range(3))
+    graph, one, other, unit = new_graph(3, SimplifiedGraph)
     output = one + 0.0 * (graph.angle().cos() * one - other).forgiving_root(unit).held()
     line = Program(None, ErrorBounds(graph).of([output]))._by_numbers
     assert line(np.array([0.0]), [1.0, 0.5, 1e-3], (1,)) == 0.0

@@ -15,6 +15,7 @@ from kinetostatics.studies.stability import PLACES
 from support.bounded import FAMILIES, errors, solution
 from support.case_files import shipped
 from support.every import every
+from support.graphs import new_graph
 
 MORE = 1.0 + 1e-12
 """For the rounding of bounds themselves."""
@@ -54,8 +55,7 @@ def test_tiny_design_numbers_do_not_lose_an_adjoint():
 
 
 def test_errors_of_what_is_used_twice_cancel():
-    graph = Graph()
-    other, factor = map(graph.parameter, range(2))
+    graph, other, factor = new_graph(2)
     rounded = graph.angle() + other + other
     forward, tight = found(graph, rounded - factor * rounded, 1.0, 0.3, 1.0 + 2.0**-30)
     assert forward > 7.0 * UNIT_ROUNDOFF
@@ -63,8 +63,7 @@ def test_errors_of_what_is_used_twice_cancel():
 
 
 def test_design_constants_carry_all_their_errors():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     lost = (one + other) - one  # computed 0, truly 2^-54
     rounded = lost * graph.angle() + lost * graph.angle().sin() + (3000.0 * lost) * graph.angle().cos()
     _, tight = found(graph, rounded, 1.0, 1.0, 2.0**-54)
@@ -72,8 +71,7 @@ def test_design_constants_carry_all_their_errors():
 
 
 def test_uncertain_signs_have_no_tight_bound():
-    graph = Graph()
-    one, tiny = map(graph.parameter, range(2))
+    graph, one, tiny = new_graph(2)
     doubtful = (graph.angle() + tiny) - one  # computed 0, truly 2^-54
     forward, tight = found(graph, doubtful + abs(doubtful) * one, 1.0, 1.0, 2.0**-54)
     assert forward >= 2.0**-53
@@ -90,8 +88,7 @@ def test_functions_have_terms_of_second_order():
 
 
 def test_second_order_errors_are_bounded():
-    graph = Graph()
-    other, tiny = map(graph.parameter, range(2))
+    graph, other, tiny = new_graph(2)
     lost = [(part + tiny) - part for part in (graph.angle(), other)]  # computed 0, truly 2^-54
     _, tight = found(graph, lost[0] * lost[1], 1.0, 1.0, 2.0**-54)
     assert tight >= 2.0**-108
@@ -140,15 +137,13 @@ def test_tight_is_no_larger_where_tables_jump():
 
 
 def test_without_cancellation_tight_is_running():
-    graph = Graph()
-    one, other = map(graph.parameter, range(2))
+    graph, one, other = new_graph(2)
     forward, tight = found(graph, (graph.angle() + one) * other / (one + 0.3), 1.0, 0.7, 0.9)
     assert tight == pytest.approx(forward, rel=1e-12, abs=0.0)
 
 
 def test_an_exact_zero_has_what_may_underflow_as_tight_bound():
-    graph = Graph()
-    one = graph.parameter(0)
+    graph, one = new_graph(1)
     recording = SimpleNamespace(graph=graph, inputs={})
     program = Program(recording, (one * one * graph.angle(),)).bounded(tight=True)
     found = program.by_numpy(np.zeros(3), [1.7], [], (3,))

@@ -38,6 +38,12 @@ CONSTANTS = 0.5, 2.0, -1.0, 1.0 / 3.0, 1e-30, 1e30, 5e-324
 """Plain numbers that others are multiplied by."""
 
 
+def new_graph(count, kind=Graph):
+    """A graph and its first parameters."""
+    graph = kind()
+    return graph, *map(graph.parameter, range(count))
+
+
 def recipe(random, count):
     """Operations one after the other, each with the places of its arguments among what is there before."""
     steps, there = [], PARAMETERS + UNITS + 4
