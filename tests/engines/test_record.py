@@ -11,7 +11,7 @@ from kinetostatics.engines.record import Gaps, Recorder
 from kinetostatics.engines.simplify import SimplifiedGraph
 from kinetostatics.machine.loads import TURN
 from support.every import every
-from support.scenes import SCENES
+from support.scenes import SCENES, six_bar
 
 
 def test_recorded_numbers_have_no_value():
@@ -48,14 +48,6 @@ def four_bar(size=1.0, speed=30.0):
     )
 
 
-def six_bar(size=1.0, speed=30.0):
-    groups = (
-        ks.RockerGroup(0.4, 0.3, (0.35, 0.0)),
-        ks.SliderGroup(0.5, on="B", pin="C", label="2", slider=ks.Link(size)),
-    )
-    return ks.Scene(ks.Mechanism("six-bar", ks.Crank(0.1), groups), speed)
-
-
 @pytest.fixture
 def counted(monkeypatch):
     """Counts recordings, and modules that are made of programs, which numba would compile."""
@@ -83,7 +75,7 @@ FAMILIES = {
     "plain": plain,
     "cam": cam,
     "four-bar": four_bar,
-    "six-bar": six_bar,
+    "six-bar": lambda size: ks.Scene(six_bar(size), 30.0),
     "crank speed over the angles": lambda size: plain(size, speeds(size)),
     "designs": lambda size: plain(SIZES * size),
     "a table over the angles": lambda size: plain(size, load=ks.ProcessForce(speeds(size))),

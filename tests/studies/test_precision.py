@@ -21,6 +21,7 @@ from kinetostatics.studies.methods.kane import equations
 from kinetostatics.studies.methods.method import Method
 from kinetostatics.studies.precision import METHODS
 from kinetostatics.views import charts
+from support.case_files import shipped
 from support.studied import FEW, torque_study
 
 pytestmark = pytest.mark.slow
@@ -110,7 +111,7 @@ def test_no_method_is_nearer_than_ours(interpreted, name, variant, quantity):
     Integration at its finest tolerance only, what is there twice, compiled too, once; compiled programs as they are
     written.
     """
-    s = ks.load_case(name).solve(variant, 24)
+    s = shipped(name).solve(variant, 24)
     reference = enclosure(s, quantity)
 
     def errors(methods):
@@ -137,7 +138,7 @@ def test_no_method_is_nearer_than_ours(interpreted, name, variant, quantity):
     [("shaper", "cutting"), ("pumpjack", "weights"), ("yoke_pump", "pumping"), ("v_twin", "firing")],
 )
 def test_general_methods_chart_tables_and_loads(name, variant):
-    s = ks.load_case(name).solve(variant, 8)
+    s = shipped(name).solve(variant, 8)
     for quantity in ("balancing_torque", "O"):
         reference = enclosure(s, quantity)
         for method in (*equations.METHODS, *newton.NEWTON_METHODS):
@@ -148,7 +149,7 @@ def test_general_methods_chart_tables_and_loads(name, variant):
 def test_kane_covers_every_shipped_mechanism():
     """But for planets: Kane's equations here know no teeth."""
     for name in shipped_cases():
-        for variant in ks.load_case(name).variants.values():
+        for variant in shipped(name).variants.values():
             if any(isinstance(group, ks.PlanetaryCrank) for group in variant.mechanism.groups):
                 continue
             made, numbers = structures.structure(variant.mechanism)

@@ -44,7 +44,7 @@ def test_independent_path_confirms_30_digits(flint, kind):
 @pytest.mark.slow
 @every("variant", unlike_variants("sawframe_2r63_friction"))
 def test_shipped_saw_friction_is_certified(flint, variant):
-    s = shipped("sawframe_2r63_friction").variants[variant].scene.solve(ANGLES)
+    s = shipped("sawframe_2r63_friction").variants[variant].scene.solve(ANGLES[::3])
     assert s.friction
     for quantity in ("balancing_torque", "O", "B"):
         reference = certified.certified(s, quantity)
