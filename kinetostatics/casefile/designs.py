@@ -1,17 +1,12 @@
 """Designs of a case file (searches), and the faults of designs and tolerances."""
 
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..design import case_text
 from ..design.cam_start import Options, starting_machine
 from ..design.constraints import MEAN, parse_constraint, parse_output
 from ..design.duties import read_duties
-from ..design.optimisation import optimise
-from ..design.pareto_front import Front, pareto
 from ..design.problem import parse_bounds
-from ..design.result import Found, named_scenes
-from ..design.torque_free import torque_free_cam
 from ..errors import DesignError, KinetostaticsError
 from ..numbers import checks
 from ..numbers.formatting import heading, si_columns
@@ -19,6 +14,10 @@ from ..numbers.spreads import parse_spread, read_spreads
 from ..numbers.units import base_factor
 from .schema.designs import FrontTable, OneDesign, OptimumTable, TorqueFreeCamTable
 from .schema.tables import validate
+
+if TYPE_CHECKING:
+    from ..design.pareto_front import Front
+    from ..design.result import Found
 
 CAM_KEYS = tuple(item.name for item in fields(Options) if item.name in TorqueFreeCamTable.model_fields)
 """Keys of a torque-free cam that are arguments of `torque_free_cam`."""
@@ -82,6 +81,10 @@ class Design:
         DesignError
             No machine meets the limits; the message gives the reason and the nearest machine.
         """
+        from ..design.optimisation import optimise
+        from ..design.pareto_front import pareto
+        from ..design.torque_free import torque_free_cam
+
         table = self.table
         source, reference = self._variants[self.source], self._variants[self.reference]
         if self.duties:
@@ -109,6 +112,10 @@ def write_found(path, case, found):
     ParameterError
         A part of a scene is a function or object without a text in case files.
     """
+    from ..design import case_text
+    from ..design.pareto_front import Front
+    from ..design.result import named_scenes
+
     designs = [case.designs[name] for name in found]
     pairs = [pair for item in designs for pair in item.sources.items()]
     names = dict.fromkeys([case.reference, *(name for source, other in pairs for name in (other, source))])

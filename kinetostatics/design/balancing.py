@@ -26,7 +26,6 @@ from ..solution.solution import Solution
 from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
 from .lanchester import WithShafts, shafts
 from .linkage import crank_sliders, four_bar_shape
-from .pareto_front import Front, points_problem
 
 __all__ = [
     "Balanced",
@@ -413,6 +412,8 @@ def pareto(mechanism, *, points=9, crank_speed=1.0, phase=False, about=(0.0, 0.0
     True
     """
     import pandas as pd
+
+    from .pareto_front import Front, points_problem
 
     given = crank_speed, "rad/s", {"unequal": 0.0}
     speed = checks.single_numbers("pareto", points_problem(points), crank_speed=given)["crank_speed"]

@@ -3,29 +3,13 @@
 May import errors, numbers to solution.
 """
 
-from .energy_flow import EnergyFlow
-from .flywheel_sizing import Flywheel, flywheel
-from .motor import Motor
-from .running import Running
-from .savings import DrivenComparison
-from .steady_running import steady
-from .trajectory import Event, Trajectory
-from .transient import coast, start
 
-__all__ = [
-    "DrivenComparison",
-    "EnergyFlow",
-    "Event",
-    "Flywheel",
-    "Motor",
-    "Running",
-    "Trajectory",
-    "coast",
-    "flywheel",
-    "start",
-    "steady",
-]
+def __getattr__(name):
+    """A public name, loaded on first use; `__init__.pyi` lists them."""
+    from ..numbers.lazy import public_name
+
+    return public_name(__name__, name)
 
 
 def __dir__():
-    return __all__
+    return __getattr__("__all__")

@@ -7,7 +7,6 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from ...design.robust import Spread
 from ...numbers.units import quoted
 from .tables import Table, must_describe, one_of
 from .texts import Angle, Coordinate, Mass, pair_of
@@ -43,8 +42,10 @@ class RobustTable(Table):
     """Of the drawing."""
 
     @property
-    def spread(self) -> Spread:
-        """The spread described by the table."""
+    def spread(self):
+        """The spread described by the table, a `ks.design.Spread`."""
+        from ...design.robust import Spread
+
         return Spread(**dict(self))
 
     _check = must_describe("spread")

@@ -227,8 +227,9 @@ class Harmonic(checks.Checked, Cam):
 
     @property
     def smallest_radius(self):
-        """Smallest distance of the roller centre from O at 720 crank angles, m."""
-        return np.min(self.polar(RADIUS_ANGLES, ray_at(RADIUS_ANGLES))[0])
+        """Smallest distance of the roller centre from O at 120 crank angles, m."""
+        angles = RADIUS_ANGLES[::6]
+        return np.min(self.polar(angles, ray_at(angles))[0])
 
     def polar(self, angle, ray):
         mean, farther, slope, second = self.about_mean(angle, ray)
