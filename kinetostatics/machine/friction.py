@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -46,24 +46,21 @@ class PinFriction(checks.Checked, Batched):
     4373
     """
 
-    mu: Any
-    radius: Any
+    mu: Annotated[Any, COEFFICIENT]
+    radius: Annotated[Any, PIN_RADIUS]
 
     COEFFICIENTS = ("mu",)
-    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN_RADIUS)
+    RULES = checks.Rules("pin friction")
 
 
 @dataclass(frozen=True, eq=False)
 class SlidingFriction(checks.Checked, Batched):
     """Friction of a sliding pair, against its velocity."""
 
-    mu: Any
-    half_length: Any = None
+    mu: Annotated[Any, COEFFICIENT]
+    half_length: Annotated[Any, checks.Optional(SIZE)] = None
 
     COEFFICIENTS = ("mu",)
-
-
-SLIDING_RULES = {"mu": COEFFICIENT, "half_length": checks.Optional(SIZE)}
 
 
 class GuideFriction(SlidingFriction):
@@ -90,7 +87,7 @@ class GuideFriction(SlidingFriction):
     (0.1, True)
     """
 
-    RULES = checks.Rules("guide friction", **SLIDING_RULES)
+    RULES = checks.Rules("guide friction")
 
 
 class SlotFriction(SlidingFriction):
@@ -118,7 +115,7 @@ class SlotFriction(SlidingFriction):
     36.7
     """
 
-    RULES = checks.Rules("slot friction", **SLIDING_RULES)
+    RULES = checks.Rules("slot friction")
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,10 +152,10 @@ class RollerFriction(checks.Checked, Batched):
     20739
     """
 
-    mu: Any
-    pin_radius: Any
-    roller_radius: Any
-    rolling_arm: Any = 0.0
+    mu: Annotated[Any, COEFFICIENT]
+    pin_radius: Annotated[Any, PIN_RADIUS]
+    roller_radius: Annotated[Any, SIZE]
+    rolling_arm: Annotated[Any, ROLLING_ARM] = 0.0
 
     COEFFICIENTS = ("mu", "rolling_arm")
 
@@ -172,14 +169,7 @@ class RollerFriction(checks.Checked, Batched):
             if np.any(stuck := arm >= self.roller_radius):
                 yield checks.Problem(text, stuck)
 
-    RULES = checks.Rules(
-        "roller friction",
-        _rolls,
-        mu=COEFFICIENT,
-        pin_radius=PIN_RADIUS,
-        roller_radius=SIZE,
-        rolling_arm=ROLLING_ARM,
-    )
+    RULES = checks.Rules("roller friction", _rolls)
 
 
 KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)

@@ -1,7 +1,7 @@
 """The straight guide of a slider: a line of any inclination and offset from O, and the motion of a slider on it."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -45,9 +45,9 @@ class Guide(checks.Checked):
     {'slider': Guide(angle=0.0, guide_offset=0.05, exact=None)}
     """
 
-    angle: Any = 0.0
-    guide_offset: Any = 0.0
-    exact: Any = None
+    angle: Annotated[Any, checks.Optional(checks.Number("rad", "guide_angle"))] = 0.0
+    guide_offset: Annotated[Any, checks.Number("m")] = 0.0
+    exact: Annotated[Any, checks.Optional(checks.Pair("1", "direction"))] = None
 
     PATHS: ClassVar = {"angle": "guide_angle"}
 
@@ -61,13 +61,7 @@ class Guide(checks.Checked):
             if np.any(np.abs(length - 1.0) > 1e-9):
                 yield f"direction must have length 1, got {length}; change x and y together, or use Guide.at"
 
-    RULES = checks.Rules(
-        "guide",
-        _unit_vector,
-        angle=checks.Optional(checks.Number("rad", "guide_angle")),
-        guide_offset=checks.Number("m"),
-        exact=checks.Optional(checks.Pair("1", "direction")),
-    )
+    RULES = checks.Rules("guide", _unit_vector)
 
     def __post_init__(self):
         super().__post_init__()
@@ -190,6 +184,10 @@ class Guide(checks.Checked):
     def line(self):
         """Guide for kernels."""
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
+
+
+SliderGuide = Annotated[Guide, checks.InstanceOf(Guide, "made by Guide.at or .through")]
+"""Type of a field for a guide, with its rule."""
 
 
 def slider_motion(position, reach, travel, line):

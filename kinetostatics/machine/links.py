@@ -13,7 +13,7 @@ that owns its joint. `Slot` and `CamDriven` describe how a joint or link is guid
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -111,17 +111,12 @@ class Link(checks.Checked):
     Link(mass=160.0, centre=(1.0625, 0.0), inertia=29.875)
     """
 
-    mass: Any = 0.0
-    centre: Any = (0.0, 0.0)
-    inertia: Any = 0.0
+    mass: Annotated[Any, checks.Number("kg", low=0.0)] = 0.0
+    centre: Annotated[Any, checks.Pair("m", parts=("along", "across"), lone=True)] = (0.0, 0.0)
+    inertia: Annotated[Any, checks.Number("kg*m**2", low=0.0)] = 0.0
     plane = couple_unbalance = None
 
-    RULES = checks.Rules(
-        "Link",
-        mass=checks.Number("kg", low=0.0),
-        centre=checks.Pair("m", parts=("along", "across"), lone=True),
-        inertia=checks.Number("kg*m**2", low=0.0),
-    )
+    RULES = checks.Rules("Link")
 
     def without_mass(self):
         """The link without mass and inertia, in its plane."""

@@ -5,7 +5,7 @@ splines are smooth and keep their digits all round the turn.
 """
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -186,9 +186,9 @@ class CosineLaw(checks.Checked, Cam):
     2.162090692
     """
 
-    amplitude: Any
-    mean: Any
-    guide_angle: Any = 0.0
+    amplitude: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    mean: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    guide_angle: Annotated[Any, checks.Number("rad")] = 0.0
 
     ELEMENTWISE = True
 
@@ -199,13 +199,7 @@ class CosineLaw(checks.Checked, Cam):
             got = f"got mean {mean} m and amplitude {amplitude} m"
             yield checks.Problem(f"mean must exceed the amplitude, or the slider would run over O; {got}", over)
 
-    RULES = checks.Rules(
-        "cosine-law cam",
-        _origin_problems,
-        amplitude=checks.Number("m", low=0.0, strict=True),
-        mean=checks.Number("m", low=0.0, strict=True),
-        guide_angle=checks.Number("rad"),
-    )
+    RULES = checks.Rules("cosine-law cam", _origin_problems)
 
     @cached_property
     def _cosine(self):

@@ -7,7 +7,7 @@ angle of a polar angle.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ..cams.cam import Cam
 from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
 from ..dimensions import Radius
-from ..group import PLANE, Group, Output
+from ..group import Group, Label, Name, Output, Plane
 from ..laws.law import TURN, Breakpoint, breakpoints_of, law_problem, turn_angles
 from ..links import CamDriven, Rolling
 
@@ -167,15 +167,13 @@ class LawRule:
         return (value, f"{field}: {problem}") if problem else (FollowerLaw(value), None)
 
 
-RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_empty=True), "plane": PLANE}
-
-
 class Follower(checks.Checked, Group):
     """Follower of one link, `moved`, by a law of the crank angle."""
 
-    cam: Any
-    pin: str
-    label: str
+    cam: Annotated[Any, LawRule()]
+    pin: Name
+    label: Label
+    plane: Plane
     roller: Any
 
     hangs_on = ("O",)

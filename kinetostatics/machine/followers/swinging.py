@@ -11,7 +11,7 @@ M, the moment of all loads on the arm about it, the crank feels -M dtheta/dphi f
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -28,11 +28,11 @@ from ...numbers.planar import (
     scale_vector,
     subtract_vectors,
 )
-from ..cams.roller import Roller
+from ..cams.roller import OptionalRoller
 from ..dimensions import Span, of_fixed_point
-from ..group import FRAME, LINK, Bar, Declaration, Output, Point, Resolved
+from ..group import FRAME, Bar, Declaration, GroupLink, Name, Output, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between
-from . import follower
+from .follower import Follower
 
 TERMS = {
     "distance": ("a", "from O to the pivot"),
@@ -87,7 +87,7 @@ def resolve(motion, arm_length, load):
 
 
 @dataclass(frozen=True, eq=False)
-class SwingingFollower(follower.Follower):
+class SwingingFollower(Follower):
     """Arm about the fixed joint `pivot_name` whose roller runs on a cam fixed to the crank, by a law.
 
     Parameters
@@ -141,14 +141,14 @@ class SwingingFollower(follower.Follower):
     """
 
     cam: Any
-    arm_length: Any
-    pivot: Any
-    assembly: int = 1
-    arm: Link = Link()
+    arm_length: Annotated[Any, checks.Number("m", "arm length", low=0.0, strict=True)]
+    pivot: Annotated[Any, checks.Pair("m", "follower pivot")]
+    assembly: Annotated[int, checks.Sign()] = 1
+    arm: GroupLink = Link()
     pin: str = "R"
-    pivot_name: str = "Q"
+    pivot_name: Name = "Q"
     label: str = ""
-    roller: Roller | None = None
+    roller: OptionalRoller = None
     plane: Any = None
 
     def _pivot_apart(self):
@@ -161,17 +161,7 @@ class SwingingFollower(follower.Follower):
     TRUSTED = True
     LAW = ("beta", "rad")
     PATHS: ClassVar = {"pivot": "follower_pivot", "plane": "arm_plane"}
-    RULES = checks.Rules(
-        "swinging follower",
-        _pivot_apart,
-        **follower.RULES,
-        arm_length=checks.Number("m", "arm length", low=0.0, strict=True),
-        pivot=checks.Pair("m", "follower pivot"),
-        assembly=checks.Sign(),
-        arm=LINK,
-        pivot_name=checks.Name(),
-        roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
-    )
+    RULES = checks.Rules("swinging follower", _pivot_apart)
 
     @property
     def declaration(self):

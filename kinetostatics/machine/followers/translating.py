@@ -14,19 +14,19 @@ stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7)
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
 from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
-from ..cams.roller import Face, Roller
+from ..cams.roller import Face, OptionalRoller
 from ..dimensions import within
-from ..group import EMPTY, FRAME, LINK, Declaration, Output, Point, Resolved
-from ..guide import Guide, slider_motion
+from ..group import EMPTY, FRAME, Declaration, GroupLink, Output, Point, Resolved
+from ..guide import Guide, SliderGuide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
-from .follower import RULES, Follower
+from .follower import Follower
 
 TERMS = {
     "pushed": ("N", "force of the cam along the guide"),
@@ -36,20 +36,13 @@ TERMS = {
 """Symbols and meanings of kernel lines in hand calculations."""
 
 
-GUIDED_RULES = {
-    **RULES,
-    "guide": checks.InstanceOf(Guide, "made by Guide.at or .through"),
-    "follower": LINK,
-}
-
-
 @dataclass(frozen=True, eq=False)
 class GuidedFollower(Follower):
     """Follower on a guide, moved by a cam on the crank; its kinds give ``forces(travel, guide, load, push)``."""
 
     cam: Any
-    guide: Guide = Guide()
-    follower: Link = Link()
+    guide: SliderGuide = Guide()
+    follower: GroupLink = Link()
     pin: str = "R"
     label: str = ""
 
@@ -167,13 +160,11 @@ class RollerFollower(GuidedFollower):
     -11.309932
     """
 
-    roller: Roller | None = None
+    roller: OptionalRoller = None
     plane: Any = None
 
     TRUSTED = True
-    RULES = checks.Rules(
-        "roller follower", **GUIDED_RULES, roller=checks.Optional(checks.InstanceOf(Roller, "a Roller"))
-    )
+    RULES = checks.Rules("roller follower")
     MOTIONS: ClassVar = {
         "pressure_angle": Output(
             "rad", False, "of the contact force from the guide, positive with growing crank angle"
@@ -269,11 +260,11 @@ class FlatFollower(GuidedFollower):
     (0.01, 250.0)
     """
 
-    face: Face | None = None
+    face: Annotated[Face | None, checks.Optional(checks.InstanceOf(Face, "a Face"))] = None
     plane: Any = None
 
     TRUSTED = True
-    RULES = checks.Rules("flat follower", **GUIDED_RULES, face=checks.Optional(checks.InstanceOf(Face, "a Face")))
+    RULES = checks.Rules("flat follower")
     MOTIONS: ClassVar = {
         "contact_place": Output("m", False, "of the contact, from O along the guide's left normal"),
         "curvature_radius": Output("m", False, "of the cam at the contact, positive where convex"),

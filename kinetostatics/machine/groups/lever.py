@@ -12,7 +12,7 @@ reference point for the couple of the pair.
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..dimensions import Span, of_fixed_point
-from ..group import FRAME, Declaration, Group, Output, Point, Resolved, rules_of_parts, separation
+from ..group import FRAME, Declaration, Group, GroupLink, Label, Name, Output, Plane, Point, Resolved, separation
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, present
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
@@ -233,28 +233,22 @@ class LeverGroup(RPRGroup):
     True
     """
 
-    pivot: Any
-    on: str = "A"
-    offset: Any = 0.0
-    lever: Link = Link()
-    block: Link = Link()
-    pivot_name: str = "O2"
-    label: str = ""
-    assembly: int = 1
-    plane: Any = None
+    pivot: Annotated[Any, checks.Pair("m", "lever pivot")]
+    on: Name = "A"
+    offset: Annotated[Any, checks.Number("m", "slot offset")] = 0.0
+    lever: GroupLink = Link()
+    block: GroupLink = Link()
+    pivot_name: Name = "O2"
+    label: Label = ""
+    assembly: Annotated[int, checks.Sign(tuple(change_points.SIDES))] = 1
+    plane: Plane = None
     LINKS: ClassVar = {"lever": "pivot_name", "block": "on"}
     LEVER, BLOCK, PAIR = "lever", "block", "slot"
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset", "plane": "lever_plane"}
     KINDS: ClassVar = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
     """Crank a, distance d from O to the pivot, offset o of the slot."""
-    RULES = checks.Rules(
-        "lever group",
-        pivot=checks.Pair("m", "lever pivot"),
-        offset=checks.Number("m", "slot offset"),
-        assembly=checks.Sign(tuple(change_points.SIDES)),
-        **rules_of_parts(("lever", "block"), "on", "pivot_name"),
-    )
+    RULES = checks.Rules("lever group")
 
     @property
     def motions(self):
@@ -320,24 +314,20 @@ class CylinderGroup(RPRGroup):
     0.412311
     """
 
-    pivot: Any
-    on: str = "A"
-    rod: Link = Link()
-    cylinder: Link = Link()
-    pivot_name: str = "O2"
-    label: str = ""
-    plane: Any = None
+    pivot: Annotated[Any, checks.Pair("m", "cylinder pivot")]
+    on: Name = "A"
+    rod: GroupLink = Link()
+    cylinder: GroupLink = Link()
+    pivot_name: Name = "O2"
+    label: Label = ""
+    plane: Plane = None
 
     LINKS: ClassVar = {"rod": "on", "cylinder": "pivot_name"}
     LEVER, BLOCK, PAIR = "cylinder", "rod", "cylinder"
     TRUSTED = is_rod = True
     PATHS: ClassVar = {"pivot": "cylinder_pivot", "plane": "rod_plane"}
     assembly: ClassVar = 1
-    RULES = checks.Rules(
-        "cylinder group",
-        pivot=checks.Pair("m", "cylinder pivot"),
-        **rules_of_parts(("rod", "cylinder"), "on", "pivot_name"),
-    )
+    RULES = checks.Rules("cylinder group")
 
     @property
     def motions(self):

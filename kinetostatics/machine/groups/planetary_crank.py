@@ -12,7 +12,7 @@ no work.
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -29,7 +29,7 @@ from ...numbers.planar import (
 )
 from ..crank import ray
 from ..dimensions import Angle, Span
-from ..group import Declaration, Group, Point, Resolved, rules_of_parts
+from ..group import Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Meshing, Turning
 
 TERMS = {
@@ -121,14 +121,14 @@ class PlanetaryCrank(checks.Checked, Group):
     0.019
     """
 
-    radius: Any
-    line_angle: Any = 0.0
-    pressure_angle: Any = math.radians(20.0)
-    on: str = "A"
-    pin: str = "P"
-    planet: Link = Link()
-    label: str = ""
-    plane: Any = None
+    radius: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    line_angle: Annotated[Any, checks.Number("rad")] = 0.0
+    pressure_angle: Annotated[Any, checks.Number("rad", low=0.0)] = math.radians(20.0)
+    on: Name = "A"
+    pin: Name = "P"
+    planet: GroupLink = Link()
+    label: Label = ""
+    plane: Plane = None
 
     def _steep_teeth_problem(self):
         """Yield the problem of designs whose teeth would push along the arm."""
@@ -141,14 +141,7 @@ class PlanetaryCrank(checks.Checked, Group):
     LINKS: ClassVar = {"planet": "on"}
     TRUSTED = True
     PATHS: ClassVar = {"radius": "planet_radius", "plane": "planet_plane"}
-    RULES = checks.Rules(
-        "planetary crank",
-        _steep_teeth_problem,
-        radius=checks.Number("m", low=0.0, strict=True),
-        line_angle=checks.Number("rad"),
-        pressure_angle=checks.Number("rad", low=0.0),
-        **rules_of_parts(("planet",), "on", "pin"),
-    )
+    RULES = checks.Rules("planetary crank", _steep_teeth_problem)
 
     @property
     def declaration(self):

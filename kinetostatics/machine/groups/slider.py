@@ -9,7 +9,7 @@ there, the words "open" and "crossed" let it run on (`change_points`).
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..dimensions import Span, within
-from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts
-from ..guide import Guide, slider_motion
+from ..group import FRAME, Bar, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
+from ..guide import Guide, SliderGuide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, link_between
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
@@ -157,28 +157,22 @@ class SliderGroup(checks.Checked, Branch, Group):
     0.24975
     """
 
-    coupler_length: Any
-    guide: Guide = Guide()
-    assembly: int = 1
-    coupler: Link = Link()
-    slider: Link = Link()
-    on: str = "A"
-    pin: str = "B"
-    label: str = ""
-    plane: Any = None
+    coupler_length: Annotated[Any, checks.Number("m", "coupler length", low=0.0, strict=True)]
+    guide: SliderGuide = Guide()
+    assembly: Annotated[int, checks.Sign(tuple(change_points.SIDES))] = 1
+    coupler: GroupLink = Link()
+    slider: GroupLink = Link()
+    on: Name = "A"
+    pin: Name = "B"
+    label: Label = ""
+    plane: Plane = None
     LINKS: ClassVar = {"coupler": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": "", "plane": "coupler_plane"}
     KINDS: ClassVar = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
     """Crank a, coupler l, offset e of the guide."""
     kernels = change_points.slid, near_dead_centre.slid
-    RULES = checks.Rules(
-        "slider group",
-        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
-        guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
-        assembly=checks.Sign(tuple(change_points.SIDES)),
-        **rules_of_parts(("coupler", "slider"), "on", "pin"),
-    )
+    RULES = checks.Rules("slider group")
 
     @property
     def declaration(self):

@@ -5,7 +5,7 @@ cot(beta). The travel is linear in the motion of A, so there is neither dead cen
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..dimensions import Angle, within
-from ..group import FRAME, Declaration, Group, Point, Resolved, rules_of_parts
-from ..guide import Guide, slider_motion
+from ..group import FRAME, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
+from ..guide import Guide, SliderGuide, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning
 
 MIN_SLOT_SINE = 1e-9
@@ -127,14 +127,14 @@ class YokeGroup(checks.Checked, Group):
     0.05
     """
 
-    guide: Guide = Guide()
-    slot_angle: Any = np.pi / 2
-    on: str = "A"
-    pin: str = "B"
-    slider: Link = Link()
-    block: Link = Link()
-    label: str = ""
-    plane: Any = None
+    guide: SliderGuide = Guide()
+    slot_angle: Annotated[Any, checks.Number("rad")] = np.pi / 2
+    on: Name = "A"
+    pin: Name = "B"
+    slider: GroupLink = Link()
+    block: GroupLink = Link()
+    label: Label = ""
+    plane: Plane = None
 
     def _parallel_slot_problem(self):
         """Yield the problem of designs whose slot is parallel to the guide."""
@@ -151,13 +151,7 @@ class YokeGroup(checks.Checked, Group):
     LINKS: ClassVar = {"block": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": "", "plane": "block_plane"}
-    RULES = checks.Rules(
-        "yoke group",
-        _parallel_slot_problem,
-        guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
-        slot_angle=checks.Number("rad"),
-        **rules_of_parts(("slider", "block"), "on", "pin"),
-    )
+    RULES = checks.Rules("yoke group", _parallel_slot_problem)
 
     @property
     def declaration(self):

@@ -13,8 +13,8 @@ the piston. Its work is the integral of the force: the potential energy, zero at
 The integral from 0 to 1 by Gauss's rule has no singular case at n = 1 (isothermal), where it is 1.
 """
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -90,14 +90,19 @@ class GasSpring(SliderLoad):
     -1797.4 N, 0.000 J
     """
 
-    area: Any
-    volume: Any
-    pressure: Any
-    at: Any = field(kw_only=True)
-    side: int = field(default=1, kw_only=True)
-    exponent: Any = field(default=1.3, kw_only=True)
-    ambient: Any = field(default=101325.0, kw_only=True)
-    on: str = field(default="slider", kw_only=True)
+    area: Annotated[
+        Any, checks.Number("m**2", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in mm2?", 1e-6))
+    ]
+    volume: Annotated[
+        Any, checks.Number("m**3", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in litres?", 1e-3))
+    ]
+    pressure: Annotated[Any, checks.Number("Pa", low=0.0, strict=True, usual=PRESSURES)]
+    _: KW_ONLY
+    at: Annotated[Any, checks.Number("m")]
+    side: Annotated[int, checks.Sign()] = 1
+    exponent: Annotated[Any, checks.Number("1", low=1.0)] = 1.3
+    ambient: Annotated[Any, checks.Number("Pa", low=0.0, usual=PRESSURES)] = 101325.0
+    on: str = "slider"
 
     PATH, LENGTHS, REFUSES = "gas_spring", ("at",), True
 
@@ -106,18 +111,7 @@ class GasSpring(SliderLoad):
         if checks.has_known_values(self.exponent) and np.any(np.asarray(self.exponent) > MAX_EXPONENT):
             yield f"exponent must be at most {MAX_EXPONENT:g}, got {checks.shown(self.exponent)}"
 
-    RULES = checks.Rules(
-        "gas spring",
-        _exponent_problems,
-        area=checks.Number("m**2", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in mm2?", 1e-6)),
-        volume=checks.Number("m**3", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in litres?", 1e-3)),
-        pressure=checks.Number("Pa", low=0.0, strict=True, usual=PRESSURES),
-        at=checks.Number("m"),
-        side=checks.Sign(),
-        exponent=checks.Number("1", low=1.0),
-        ambient=checks.Number("Pa", low=0.0, usual=PRESSURES),
-        on=checks.Name(),
-    )
+    RULES = checks.Rules("gas spring", _exponent_problems)
 
     def push(self, motion):
         """Force on the slider along the guide, N."""

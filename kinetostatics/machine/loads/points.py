@@ -6,8 +6,8 @@ oppositely on both.
 """
 
 import math
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -213,19 +213,14 @@ class Force(PlacedLoad):
     True
     """
 
-    value: Any
-    at: Any = field(default=None, kw_only=True)
-    direction: Any = field(default=0.0, kw_only=True)
-    along: Any = field(default=None, kw_only=True)
+    value: Annotated[Any, ForceRule(checks.Number("N", table=True))]
+    _: KW_ONLY
+    at: Annotated[Any, PlaceRule()] = None
+    direction: Annotated[Any, checks.Number("rad")] = 0.0
+    along: Annotated[Any, checks.Optional(checks.Name())] = None
 
     PATH, VALUE, OVER_ANGLES, LENGTHS = "force", "value", ("value",), ("at",)
-    RULES = checks.Rules(
-        "force",
-        value=ForceRule(checks.Number("N", table=True)),
-        at=PlaceRule(),
-        direction=checks.Number("rad"),
-        along=checks.Optional(checks.Name()),
-    )
+    RULES = checks.Rules("force")
 
     @property
     def title(self):
@@ -265,7 +260,7 @@ class Force(PlacedLoad):
 class PointLoad(PlacedLoad):
     """A load along the line of two points `between`."""
 
-    between: Any
+    between: Annotated[Any, PlacePairRule()]
 
     REFUSES, SIGN, REMEDY = True, "line", ""
 
@@ -355,11 +350,12 @@ class PointForce(PointLoad):
     True
     """
 
-    value: Any
-    between: Any = field(kw_only=True)
+    value: Annotated[Any, value_rule("N")]
+    _: KW_ONLY
+    between: Any
 
     PATH, VALUE, OVER_ANGLES, LENGTHS = "point_force", "value", ("value",), ("between",)
-    RULES = checks.Rules("point force", value=value_rule("N"), between=PlacePairRule())
+    RULES = checks.Rules("point force")
 
     def pull(self, motion):
         """Force on the first point, N."""
@@ -404,17 +400,13 @@ class PointSpring(PointLoad):
     True
     """
 
-    stiffness: Any
-    free_length: Any = 0.0
-    between: Any = field(kw_only=True)
+    stiffness: Annotated[Any, checks.Number("N/m", low=0.0)]
+    free_length: Annotated[Any, checks.Number("m", low=0.0)] = 0.0
+    _: KW_ONLY
+    between: Any
 
     PATH, LENGTHS, SIGN = "point_spring", ("free_length", "between"), "spring"
-    RULES = checks.Rules(
-        "point spring",
-        stiffness=checks.Number("N/m", low=0.0),
-        free_length=checks.Number("m", low=0.0),
-        between=PlacePairRule(),
-    )
+    RULES = checks.Rules("point spring")
     REMEDY = ", or give free_length 0"
 
     def pull(self, motion):
@@ -466,12 +458,13 @@ class PointDamper(PointLoad):
     True
     """
 
-    coefficient: Any
-    between: Any = field(kw_only=True)
+    coefficient: Annotated[Any, checks.Number("N*s/m", low=0.0)]
+    _: KW_ONLY
+    between: Any
 
     PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
     DISSIPATES = True
-    RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=PlacePairRule())
+    RULES = checks.Rules("point damper")
 
     def pull(self, motion):
         """Force on the first point, N; None if neither point moves or the coefficient is 0."""
