@@ -135,10 +135,7 @@ def cam_crank_slider(
 
 
 def crank_slider_parts(mechanism):
-    """(cam roller or None, slider group) of a mechanism by `crank_slider` or `cam_crank_slider`; None for all others.
-
-    The slider's pin may have any name.
-    """
+    """(cam roller or None, slider group) of a mechanism by `crank_slider` or `cam_crank_slider`; None for others."""
     *before, last = mechanism.groups or (None,)
     rollers = [group for group in before if isinstance(group, CamRoller)]
     if not isinstance(last, SliderGroup) or (last.on, last.label) != ("A", "") or not len(before) == len(rollers) <= 1:

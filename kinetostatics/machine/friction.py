@@ -190,11 +190,7 @@ def _acts(friction):
 
 @dataclass(frozen=True, eq=False)
 class JointFriction(Batched):
-    """Friction at one joint.
-
-    `sense` is the sign of the motion there, if it is known beforehand; of a roller that of the crank. It stays the
-    same at a dead centre, so values on one side of it are smooth.
-    """
+    """Friction at one joint; `sense`: sign of its motion (of a roller, of the crank) if it is known beforehand."""
 
     joint: str
     friction: Any
@@ -215,10 +211,7 @@ class JointFriction(Batched):
 
 @dataclass(frozen=True, eq=False)
 class Frictions(Mapping, Batched):
-    """Friction of a mechanism, by joint: a mapping of names to friction.
-
-    `passes` is the number of passes that update the directions of reactions.
-    """
+    """Friction of a mechanism by joint, a mapping; `passes` update the directions of reactions."""
 
     rubs: tuple[JointFriction, ...] = ()
     passes: int = PASSES_BY_SOLVER[0]

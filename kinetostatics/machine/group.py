@@ -128,10 +128,7 @@ class Bar(NamedTuple):
 
 
 class Output(NamedTuple):
-    """Declaration of a quantity: SI unit, whether it is a vector, and a text that names both bodies.
-
-    `at` is the joint at which a reaction acts, where the reaction has another name.
-    """
+    """Declaration of a quantity: SI unit, vector or not, a text that names both bodies, joint `at` which it acts."""
 
     unit: str
     vector: bool = False

@@ -191,10 +191,7 @@ SliderGuide = Annotated[Guide, checks.InstanceOf(Guide, "made by Guide.at or .th
 
 
 def slider_motion(position, reach, travel, line):
-    """Motion of a slider from its coordinate along a guide, or its reach from a joint at `position` (kernel).
-
-    The pin takes the shorter sum: along a level guide from O, else from that joint.
-    """
+    """Motion of a slider from its coordinate along a level guide, else from its reach from a joint (kernel)."""
     level = line.direction is None
     pin = (
         (travel.position, number_or_zero(line.offset))

@@ -47,10 +47,7 @@ class Joint(NamedTuple):
 
 
 class LinkMotion(NamedTuple):
-    """Motion of a link: reference joint, direction (unit vector), angular velocity ratio to the crank and its slope.
-
-    The ratio is d theta / d phi, its slope d2 theta / d phi2; both None for a link that does not turn.
-    """
+    """Motion of a link: reference joint, unit vector, d theta / d phi and its slope; None: it never turns."""
 
     joint: Joint
     direction: Any
@@ -211,11 +208,7 @@ def angular_acceleration(ratio, ratio_slope, speed_squared, crank_acceleration):
 
 
 def load(link, body, speed_squared, crank_acceleration, gravity):
-    """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link.
-
-    The moment leaves out the centripetal force, which passes through the reference joint: in a fast link it would have
-    to cancel.
-    """
+    """Wrench of inertia and weight about the reference joint, its moment without the centripetal force; or None."""
     to_centre, mass, inertia = arm(link.direction, body.along, body.across), body.mass, body.inertia
     across, pull = None, None
     if mass is not None:
@@ -267,10 +260,7 @@ class Sliding(NamedTuple):
 
 
 class Rolling(NamedTuple):
-    """Roller on a pin of `link` at `joint`, on a curve of the link `against`.
-
-    `force` acts on the roller along the left normal of its path as seen from the curve.
-    """
+    """Roller on a pin of `link`, on a curve of `against`; `force` is along the left normal of its path there."""
 
     link: str
     joint: str
@@ -284,10 +274,7 @@ class Rolling(NamedTuple):
 
 
 class Meshing(NamedTuple):
-    """Teeth of `link` in a fixed ring, at twice the place of `joint` from O: the reaction `name` acts on the link.
-
-    `force` is the name of its part across that ray.
-    """
+    """Teeth of `link` in a fixed ring at twice the place of `joint`; `force` is the part of `name` across that ray."""
 
     link: str
     joint: str
@@ -297,10 +284,7 @@ class Meshing(NamedTuple):
 
 
 class Slide(NamedTuple):
-    """Direction of a straight pair (None: +x), rate d s / d phi of the sliding link, moment of a unit force along it.
-
-    The moment is about the reference joint of the other link (None: zero).
-    """
+    """Direction of a straight pair (None: +x), rate d s / d phi, moment of a unit force about the other's joint."""
 
     direction: Any
     rate: Any

@@ -103,10 +103,7 @@ class Dynamics(Motion):
 
     @property
     def acting(self):
-        """Loads by link, and forces along guides by slider, that the groups resolve.
-
-        For a slider with springs and known departure, the force along the guide includes its inertia.
-        """
+        """Loads by link and forces along guides by slider; with springs of known departure including inertia."""
         loads, pushes = self.link_loads, self.pushes
         for slider in {item.on: None for item in self.loads if _is_spring(item)}:
             found = self._total_push(slider)

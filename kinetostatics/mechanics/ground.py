@@ -24,13 +24,7 @@ from .pair_forces import pair_forces
 
 
 def support(state, name) -> Support:
-    """Force and couple on the frame at a place by name; `state` is a `Dynamics` or a solution.
-
-    Raises
-    ------
-    QuantityError
-        The place is unknown; the message lists the known ones.
-    """
+    """Force and couple on the frame at a place by name, of a `Dynamics` or solution; or `QuantityError`."""
     known = places(state)
     if not isinstance(name, str) or name not in known:
         raise QuantityError(checks.choice(f"{state.mechanism.name}: place on the frame", name, tuple(known)))
@@ -43,10 +37,7 @@ def support(state, name) -> Support:
 
 
 def undeclared(dynamics):
-    """Largest force, N, and moment about O, N m, on the links, without those of pairs with the frame and of the motor.
-
-    It is rounding, unless a user's group loads the frame by more than its declared pairs.
-    """
+    """Largest force, N, and moment about O, N m, on the links beside declared pairs and motor: rounding, or a fault."""
     links, guides = dynamics.placement.links, dynamics.mechanism.guides
     acting = [(links[name].joint.position, *wrench) for name, wrench in dynamics.link_loads.items()]
     for name, push in dynamics.pushes.items():

@@ -28,10 +28,7 @@ from ..numbers.planar import (
 
 
 def pair_forces(state, name, joining) -> dict[str, Support]:
-    """Forces of a pair on its link, from a `Dynamics` or solution and a pair of `machine.supports.pairs_of`.
-
-    By name: one, or two for a slide whose couple and friction refer to different joints.
-    """
+    """Forces of a pair on its link by name; two for a slide whose couple and friction refer to different joints."""
     pair = joining.pair
     if isinstance(pair, CamDriven):
         return {name: _of_cam(state, name, pair)}

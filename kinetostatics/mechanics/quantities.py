@@ -150,13 +150,7 @@ def resolved_names(scene):
 
 
 def quantity(solution, name) -> Quantity:
-    """Quantity of a solution by name.
-
-    Raises
-    ------
-    QuantityError
-        The quantity is unknown; the message lists those of the mechanism.
-    """
+    """Quantity of a solution by name; `QuantityError` with the known ones if it is unknown."""
     known = of_scene(solution)
     if not isinstance(name, str) or name not in known:
         raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
@@ -164,13 +158,7 @@ def quantity(solution, name) -> Quantity:
 
 
 def without_bars(solution, name):
-    """Name of a quantity without bars: "O" for the magnitude "|O|".
-
-    Raises
-    ------
-    QuantityError
-        The quantity is unknown or not a vector.
-    """
+    """Name of a quantity without bars: "O" for "|O|"; `QuantityError` if it is unknown or no vector."""
     bars = isinstance(name, str) and len(name) > 2 and name[0] == name[-1] == "|"
     bare = name[1:-1] if bars else name
     if not quantity(solution, bare).vector and bars:
@@ -238,10 +226,7 @@ def component_sizes(solution, name):
 
 
 def largest_term(solution, name):
-    """Largest term in the sum of a force, N, or moment, N m; 0 for a motion or a user's function.
-
-    Much smaller values may be rounding of cancelling terms.
-    """
+    """Largest term in the sum of a force, N, or moment, N m, 0 for others; much smaller values may be rounding."""
     return largest_term_in(solution, unit_of(solution, name))
 
 

@@ -32,10 +32,7 @@ OUTLINE_POINTS = 181
 
 @dataclass(frozen=True, eq=False)
 class DiskCam(Cam):
-    """Cam of a follower with ``pitch(law values) -> P, P', P''``; made by its `disk`.
-
-    It turns with the crank. Its polar angles count from +x at crank angle 0; `Cam` calls them crank angles.
-    """
+    """Cam of a follower, made by its `disk`; its polar angles count from +x at crank angle 0."""
 
     follower: Any
 
@@ -238,10 +235,7 @@ class Follower(checks.Checked, Group):
 
 
 def path_curvature(joint):
-    """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside.
-
-    In this view the joint moves around the cam clockwise.
-    """
+    """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside."""
     place, first, second = joint
     along = subtract_vectors(first, left(place))
     return -curvature(along, subtract_vectors(subtract_vectors(second, scale_vector(2.0, left(first))), place))

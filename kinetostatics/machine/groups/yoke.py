@@ -63,12 +63,7 @@ def place(joint, guide, slot_angle):
 
 
 def resolve(motion, guide, block_load, slider_load, push):
-    """Reactions, vectors at `on` and of the guide; scalars, force and moment of slot and of guide (kernel).
-
-    `push` is the applied force along the guide. Each load is the wrench of all other loads about the link's reference
-    joint, with the demands of groups further out. Equilibrium of the slider along the guide gives the slot force, which
-    acts across the slot. The slot takes the couple on the block, the guide those on block and slider.
-    """
+    """Reactions at `on` and of the guide; force and moment of slot and guide; `push` along the guide (kernel)."""
     cosine, sine = motion.slot
     along, across = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     slot = -plus(along, push) / sine

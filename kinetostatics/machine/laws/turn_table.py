@@ -30,13 +30,7 @@ MAX_NOISE_RATIO = 3.0
 class TurnTable:
     """Values at angles within a turn, base of cams and laws from tables. `smoothing` is the noise, None to interpolate.
 
-    `OWNER`, `VALUE`, `VALUES` and `SECOND` are the words of messages for the table, its values and the second
-    derivative; `LOW` is a limit that the values must exceed.
-
-    Raises
-    ------
-    ParameterError
-        Fewer than 8 points, angles not rising or more than one turn, a gap, a value that is not finite.
+    `OWNER`, `VALUE`, `VALUES` and `SECOND` are words of messages; the values must exceed `LOW`.
     """
 
     angle: np.ndarray
@@ -113,12 +107,7 @@ class TurnTable:
 
     @cached_property
     def noise(self):
-        """Standard deviation of the values about a smooth curve; for values rounded to a step, 0.29 of the step.
-
-        It follows from the root mean square distance of the values from polynomials through `reach` neighbours on both
-        sides, for the reach with the smallest distance. It is scaled to the standard deviation of independent noise in
-        every value.
-        """
+        """Standard deviation of the values from polynomials through neighbours, the least over their number."""
         angle, values, size, found = self.angle, self.values, self.angle.size, []
         for reach in range(2, min(7, (size + 1) // 2)):
             turns, place = np.divmod(np.arange(size) + np.delete(np.arange(-reach, reach + 1), reach)[:, None], size)
@@ -136,9 +125,7 @@ class TurnTable:
     def second_derivative_error(self):
         """Expected largest error of the second derivative over the turn, from noise and coarseness of the table.
 
-        The spline through every second point has 2^4 times the truncation error, so the difference of both splines
-        bounds noise and truncation. A twelfth of it (1/15 and a margin for coarse tables) bounds the truncation. Noise
-        is bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
+        The spline through every second point has 16 times the truncation error: a twelfth of the difference bounds it.
         """
         nodes, _ = _periodic(self.angle, self.values)
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)
@@ -157,11 +144,7 @@ class TurnTable:
 
     @cached_property
     def force_error(self):
-        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
-
-        It is the relative error of the acceleration at constant speed, times seven: springs or counterweights balance
-        inertia forces, but not their error, and leave a seventh of them.
-        """
+        """Error of the acceleration, relative, times seven: balancing cancels inertia forces but not their error."""
         largest = self._largest_acceleration()
         return BALANCING_RATIO * self.second_derivative_error / float(largest) if largest > 0 else math.inf
 

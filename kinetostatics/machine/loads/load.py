@@ -146,10 +146,7 @@ class Load(checks.Checked, Batched):
         return Support(total.force, None, total.moment)
 
     def sense(self, motion) -> Any:
-        """Sign of its value in the poses of a motion, 1 or -1.
-
-        Where the value is zero or missing, as beyond a table, the sign of its largest value; 1 for a function.
-        """
+        """Sign of its value in the poses of a motion, 1 or -1; where it is 0 or missing, of its largest value."""
         here: Any = 0.0
         value = self.value_now
         if isinstance(value, Table):
@@ -170,11 +167,7 @@ class Load(checks.Checked, Batched):
 class Jumps:
     """Jumps of a load where the motion that it opposes changes its sense, or its work begins or ends.
 
-    Attributes
-    ----------
-    angles : function
-        From a motion to the crank angles of its jumps over the period of the motion, (1 or designs, J), rad; NaN pads
-        the rows.
+    `angles` gives their crank angles over the period of a motion, (1 or designs, J), rad, padded by NaN.
     """
 
     angles: Callable[[Any], Any]
@@ -228,13 +221,7 @@ def kink_sources(loads):
 
 
 def kinks_of(part, motion):
-    """Crank angles of kinks, (K,), and of jumps, (J,), that a part declares, rad, wrapped into its period.
-
-    Raises
-    ------
-    ParameterError
-        It returns something other than two arrays of finite crank angles.
-    """
+    """Crank angles of kinks, (K,), and of jumps, (J,), that a part declares, rad, wrapped into its period."""
     found = part.kinks(motion)
     try:
         kinks, jumps = (np.ravel(np.asarray(angles, dtype=float)) for angles in found)

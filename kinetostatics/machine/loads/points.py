@@ -476,11 +476,7 @@ class PointDamper(PointLoad):
         return scale_vector(-self.coefficient * motion.crank_speed * shortening, d)
 
     def _directed_distance(self, motion):
-        """Vector from the second point to the first and its derivative by the crank angle; None if neither moves.
-
-        Where the points meet the vector is only rounding, so it is moved along its derivative, the direction in which
-        the points pass each other. The move fades with the fourth power of the distance.
-        """
+        """Vector between the points, moved along its derivative where they meet, and the derivative; or None."""
         first, second = (motion.spot(place) for place in self.between)
         if first.first is None and second.first is None:
             return None

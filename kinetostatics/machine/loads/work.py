@@ -46,10 +46,7 @@ TERMS = {
 
 
 class StrokeForce(WorkForce):
-    """A load on the stroke of a slider that reciprocates once in the period of the motion.
-
-    `ends` are the coordinates of its far and its near dead centre from the crank, m, if known.
-    """
+    """A load on the stroke of a slider; `ends`: coordinates of its far and near dead centre, m, if known."""
 
     ends: Any
     REFUSES = STROKE = True
