@@ -1,5 +1,7 @@
 """Four-bars that pass change points on the rocker of another one: double parallelograms, N-four-bars, rocked ones."""
 
+from functools import cache
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -33,11 +35,14 @@ OUTER = {
     "near": (2.5, 2.0, 1.5, "crossed"),
 }
 """Coupler, rocker, ground, in crank lengths of 1 m, and assembly of the one on its rocker."""
+PAIRS = [(list(INNER)[(place + k) % len(INNER)], outer) for place, outer in enumerate(OUTER) for k in (0, 3)]
+"""Each outer four-bar on the rockers of two inner ones, and each inner one under two or more."""
 UP = 1j
 WAYS = {"crank-rocker": UP, "other crank-rocker": UP}
 """Direction from the rocker's pivot to that of the outer one, or back, where the rocker only swings; else 0.4 rad."""
 
 
+@cache
 def chain(inner, outer, way=np.exp(0.4j), **more):
     a, b, h, pivot, assembly = INNER[inner]
     b2, h2, d, word = OUTER[outer]
@@ -60,8 +65,7 @@ def complex_of(pair):
 
 
 @pytest.mark.slow
-@every("inner", INNER)
-@every("outer", OUTER)
+@every("inner, outer", PAIRS)
 def test_bars_keep_their_lengths_and_joints_run_on_without_kinks(inner, outer):
     """Over all turns: rates are those of central differences, through change points too."""
     made = chain(inner, outer)
@@ -83,8 +87,7 @@ def test_bars_keep_their_lengths_and_joints_run_on_without_kinks(inner, outer):
 
 
 @pytest.mark.slow
-@every("inner", INNER)
-@every("outer", OUTER)
+@every("inner, outer", PAIRS)
 def test_motion_repeats_after_its_turns(inner, outer):
     made, turn = chain(inner, outer), np.linspace(0.1, 6.0, 40)
     first, again = (solved(made, turn + angle).position("C") for angle in (0.0, 2 * np.pi * made.turns))
@@ -94,8 +97,7 @@ def test_motion_repeats_after_its_turns(inner, outer):
 
 
 @pytest.mark.slow
-@every("inner", INNER)
-@every("outer", OUTER)
+@every("inner, outer", PAIRS)
 def test_change_points_are_where_the_side_of_the_pin_changes(inner, outer):
     made = chain(inner, outer)
     turn = np.linspace(0.0, 2 * np.pi, 5000) + 0.05
@@ -252,8 +254,7 @@ def test_programs_and_derivatives(engine):
 
 
 @pytest.mark.slow
-@every("inner", [name for name in INNER if "long" not in name])
-@every("outer", OUTER)
+@every("inner, outer", [pair for pair in PAIRS[::2] if "long" not in pair[0]])
 def test_independent_formulas_confirm_30_digits(flint, inner, outer):
     s = solved(chain(inner, outer, UP), np.array([0.3, 2.0, 7.9]))
     for quantity in ("balancing_torque", "A", "C"):

@@ -32,7 +32,7 @@ def imbalance(solution):
 @every("case", shipped_cases())
 def test_forces_on_every_link_of_shipped_machines_are_in_equilibrium(case):
     for variant in variant_names(case):
-        assert imbalance(shipped(case).solve(variant).at(ANGLES)) < CLOSED
+        assert imbalance(shipped(case).variant(variant).scene.solve(ANGLES)) < CLOSED
 
 
 @every("name", SCENES)
