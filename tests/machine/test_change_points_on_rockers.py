@@ -110,6 +110,7 @@ def test_change_points_are_where_the_side_of_the_pin_changes(inner, outer):
         assert np.abs(np.exp(1j * found) - np.exp(1j * angle)).min() < 2e-3
 
 
+@pytest.mark.slow
 @every(("inner", "outer"), [("drag link", "far"), ("crank-rocker", "antiparallelogram"), ("rhombus", "deltoid")])
 def test_joints_do_not_jump_over_a_dense_turn(inner, outer):
     made = chain(inner, outer)
@@ -203,6 +204,7 @@ def test_double_parallelogram_translates():
     assert made.change_points == (0.0, np.pi)
 
 
+@pytest.mark.slow
 def test_forces_grow_at_the_outer_bars_alone():
     made = chain("crank-rocker", "antiparallelogram")
     assert {name for name in ("O", "A", "B", "O2", "B2", "C", "O3", "ground") if made.grows(name)} == {

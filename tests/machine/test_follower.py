@@ -285,6 +285,7 @@ def test_flat_follower_curvature_is_s_and_s2():
     assert_allclose(follower.disk.curvature_radius(PSI), law.position + law.acceleration, rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_it_is_made_for_the_workshop(tmp_path):
     disk = KINDS["roller, offset"]().disk
     made = disk.profile(0.01, 90)
@@ -298,6 +299,7 @@ def test_it_is_made_for_the_workshop(tmp_path):
         disk.profile(0.2, 90)
 
 
+@pytest.mark.slow
 def test_a_flat_face_touches_the_pitch_curve_itself(tmp_path):
     """The face at s(phi) is a tangent of the cam: in axes of the crank n . surface reaches s, and nowhere more."""
     follower = ks.FlatFollower(LAW, ks.Guide.at(0.3))

@@ -168,6 +168,7 @@ def test_group_outputs_stand_in_frame_and_extremes():
     assert table.loc["slot force saw", "unit"] == "N"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("engine", ["numpy", "compiled"])
 def test_engines_and_programs_agree_with_the_kernels(solution, engine):
     if engine == "compiled":

@@ -96,6 +96,7 @@ def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle)
     return np.array(found).T
 
 
+@pytest.mark.slow
 @every("speed", [60.0, -60.0])
 @every("radius", [ARM, 0.5 * ARM])
 @every(("line", "push", "acceleration"), [(0.0, 0.0, 0.0), (0.4, -300.0, 40.0), (2.5, 200.0, -500.0)])

@@ -91,6 +91,7 @@ def test_other_cutter_cuts_the_same_curve(side):
     assert_allclose(made.cutter_path(0.02), made.pitch, rtol=0, atol=1e-16)
 
 
+@pytest.mark.slow
 def test_extremes_lie_between_the_samples():
     """Of an eccentric circle: its largest pressure angle is asin(e / a), at right angles to the centre."""
     cam = ks.cams.Circle(0.2, (0.03, 0.0))
@@ -389,6 +390,7 @@ def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
         ks.RollerFollower(law).disk.profile(0.03, 8)
 
 
+@pytest.mark.slow
 def test_a_smooth_bump_between_the_samples_is_seen():
     """The jerk of a 4-5-6-7 polynomial starts and ends with 0, so nothing jumps where its segments join."""
     width, height = np.radians(0.06), 1e-6

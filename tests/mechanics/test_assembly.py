@@ -306,6 +306,7 @@ def test_groups_beside_a_gap_keep_their_values():
         np.testing.assert_array_equal(of_scene(both)[name].read(both), of_scene(alone)[name].read(alone))
 
 
+@pytest.mark.slow
 @every("machine", [vee, on_the_rocker], ids=lambda machine: machine.__name__)
 def test_friction_has_the_gaps_of_its_forces(machine):
     """Of the first group a cylinder's joint stays beside the other's gap, a rocker's that carries it does not."""

@@ -33,7 +33,7 @@ def rubbed(friction=JOINTS, **drive):
     return ks.solve(RUBBED, TURN, friction=friction, **DRIVE | drive)
 
 
-@pytest.mark.parametrize("kind", [*quick(KINDS, 5), *FOLLOWERS])
+@pytest.mark.parametrize("kind", quick([*KINDS, *FOLLOWERS], 3))
 def test_forces_obey_newton_for_all_bodies(kind):
     difference, solution = differences(kind, 1)
     assert difference < 1e-13
@@ -203,6 +203,7 @@ def test_enclosures_hold_what_is_computed():
             assert np.abs(exact - own).max() < 1e-14 * found.largest
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_of_differences():
     program = ks.compile(SCENE, ("balancing_torque", "friction_loss"), engine="numpy")
     found = program.derivatives(TURN)
@@ -248,6 +249,7 @@ def test_extremes_stand_on_both_sides_of_a_jump():
     assert np.isclose(s.sampled.kinks, np.pi, atol=1e-12).any()
 
 
+@pytest.mark.slow
 def test_the_mean_torque_is_right_across_the_jumps():
     from kinetostatics.cycle.comparison import mean_absolute_torque
 

@@ -114,6 +114,7 @@ def test_without_springs_or_mass_nothing_is_done():
         assert all(taken is given for taken, given in zip(run.acting, (run.link_loads, run.pushes), strict=True))
 
 
+@pytest.mark.slow
 @every("name, guide", [(name, INCLINED) for name in CAMS])
 def test_one_force_takes_hardly_more_operations(name, guide):
     """Two products and two sums more at each crank angle."""
@@ -152,6 +153,7 @@ class Softened(ks.Spring):
 STIFF, PRELOAD = ks.Spring(4e5, 2.1), ks.ProcessForce(1000.0)
 
 
+@pytest.mark.slow
 @every("machine, own, plain", [
     ("crank", [Preloaded(2e5, 1.9)], [ks.Spring(2e5, 1.9), PRELOAD]),
     ("crank", [Preloaded(2e5, 1.9), STIFF], [ks.Spring(2e5, 1.9), PRELOAD, STIFF]),

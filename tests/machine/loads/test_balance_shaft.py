@@ -105,6 +105,7 @@ def newton_euler(scene, angle):
     return found[8], force, moment
 
 
+@pytest.mark.slow
 @every("speed, acceleration", [(30.0, 50.0), (-30.0, 50.0), (0.0, -40.0)])
 @every("ratio", RATIOS)
 def test_torque_and_frame_by_newton_and_euler(ratio, speed, acceleration):
@@ -121,6 +122,7 @@ def test_torque_and_frame_by_newton_and_euler(ratio, speed, acceleration):
 # Laws
 
 
+@pytest.mark.slow
 @every("ratio", RATIOS)
 def test_power_frame_and_energy_balance(ratio):
     s = pump(replace(SHAFT, ratio=ratio)).solve(24)
@@ -153,6 +155,7 @@ def test_place_on_the_frame():
     assert found.couple[0] == pytest.approx(3.0 * 0.06 * GRAVITY.vector[1])
 
 
+@pytest.mark.slow
 @every("ratio, turns", [(2, 1), (Fraction(1, 2), 2), (-1.5, 2), ("2/3", 3), (1 / 7, 7), (np.float64(0.25), 4)])
 def test_the_period_grows_to_the_denominator(ratio, turns):
     scene = pump(replace(SHAFT, ratio=ratio))

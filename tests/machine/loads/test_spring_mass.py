@@ -154,6 +154,7 @@ def test_a_spring_on_a_slider_without_mass():
     assert far(light.balancing_torque, heavy.balancing_torque) < 1e-13
 
 
+@pytest.mark.slow
 def test_springs_on_other_sliders_and_followers():
     spring = ks.Spring(300.0, 0.4, "slider2", mass=2.0)
     s = ks.solve(six_bar(), TURN, crank_speed=9.0, crank_acceleration=-4.0, loads=[ks.Gravity(), spring])

@@ -34,6 +34,7 @@ def stops(mechanism):
     return {"TDC": by_size[-1][1], "BDC": by_size[0][1]}
 
 
+@pytest.mark.slow
 @every("name", [name for name in MACHINES if name != "yoke"])
 @every("zero", ["TDC", "BDC"])
 @every("sense", [1, -1])
