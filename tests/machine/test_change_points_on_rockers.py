@@ -111,7 +111,7 @@ def test_change_points_are_where_the_side_of_the_pin_changes(inner, outer):
 
 
 @pytest.mark.slow
-@every(("inner", "outer"), [("drag link", "far"), ("crank-rocker", "antiparallelogram"), ("rhombus", "deltoid")])
+@every("inner, outer", [("drag link", "far"), ("crank-rocker", "antiparallelogram"), ("rhombus", "deltoid")])
 def test_joints_do_not_jump_over_a_dense_turn(inner, outer):
     made = chain(inner, outer)
     s = solved(made, np.linspace(0.0, 2 * np.pi * made.turns, 4001), crank_speed=1.0)
@@ -164,15 +164,15 @@ def errors(made, angle):
     }
 
 
-@pytest.mark.parametrize("inner", INNER)
-@pytest.mark.parametrize("outer", ["parallelogram", "antiparallelogram", "deltoid", "far"])
+@every("inner", INNER)
+@every("outer", ["parallelogram", "antiparallelogram", "deltoid", "far"])
 def test_forces_obey_newton(inner, outer):
     assert max(errors(chain(inner, outer), 1.234).values()) < 1e-11
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-@pytest.mark.parametrize("inner", ["crank-rocker", "drag link"])
-@pytest.mark.parametrize("outer", ["antiparallelogram", "near"])
+@every("inner", ["crank-rocker", "drag link"])
+@every("outer", ["antiparallelogram", "near"])
 def test_forces_on_the_other_bars_stay_right_beside_change_points(inner, outer):
     """Torque and forces of the inner bars lose no digit, those that grow the digits by which they do."""
     made = chain(inner, outer, UP)

@@ -10,7 +10,7 @@ from support.every import every
 from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
-@pytest.mark.parametrize("kind", [name for name in KINDS if "flat" not in name])
+@every("kind", [name for name in KINDS if "flat" not in name])
 def test_roller_path_bends_as_the_pitch_curve(kind):
     follower = KINDS[kind]()
     joint = scene(follower).solve(ANGLES).placement.joints["R"]
@@ -205,7 +205,7 @@ def three_lobes(phi):
 
 
 @every(
-    ("follower", "words"),
+    "follower, words",
     [
         (
             ks.RollerFollower(ks.laws.cosine(0.02, 0.01)),
@@ -231,7 +231,7 @@ IMPOSSIBLE = {
 }
 
 
-@pytest.mark.parametrize("name", IMPOSSIBLE)
+@every("name", IMPOSSIBLE)
 def test_what_no_follower_can_have_is_refused(name):
     given, text = IMPOSSIBLE[name]
     with pytest.raises(ks.ParameterError, match=text):

@@ -88,7 +88,7 @@ def nested(structure):
             yield from nested(part)
 
 
-@pytest.mark.parametrize("end", [(0.0, 2.0), (0.0, -2.0), (-2.0, 0.0), (2.0, 0.0), (1.0, 2.0)])
+@every("end", [(0.0, 2.0), (0.0, -2.0), (-2.0, 0.0), (2.0, 0.0), (1.0, 2.0)])
 def test_guide_along_an_axis_has_it_in_its_structure(end):
     saw = ks.crank_slider(0.1, 3.0, guide=ks.Guide.through((0.0, 0.0), end), slider=ks.Link(1.0))
     s = ks.solve(saw, np.linspace(0, 6, 50), crank_speed=3.0)
@@ -151,8 +151,8 @@ SAW = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.0)
 LEVER = ks.slotted_lever(0.1, pivot=(0.0, -0.3))
 
 
-@pytest.mark.parametrize(
-    ("mechanism", "joint", "kind"),
+@every(
+    "mechanism, joint, kind",
     [
         (SAW, "O", ks.PinFriction),
         (SAW, "B", ks.PinFriction),

@@ -42,7 +42,7 @@ def test_forces_obey_newton_for_all_bodies(kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [*KINDS, *FOLLOWERS])
+@every("kind", [*KINDS, *FOLLOWERS])
 def test_four_times_the_friction_obeys_newton_too(kind):
     assert differences(kind, 100, 4.0)[0] < 1e-13
 
@@ -52,15 +52,15 @@ def _from_rest(drawn):
     drawn.system.speed = mp.mpf(0)
 
 
-@pytest.mark.parametrize("kind", ["slider", "cam", "lever"])
+@every("kind", ["slider", "cam", "lever"])
 def test_friction_from_rest_opposes_the_coming_motion(kind):
     difference, solution = differences(kind, 3, changed=_from_rest)
     assert difference < 1e-13
     assert solution.friction_loss == 0.0
 
 
-@pytest.mark.parametrize("way", [1.0, -1.0])
-@pytest.mark.parametrize(("angle", "side"), [(0.0, 1.0), (np.pi, -1.0)])
+@every("way", [1.0, -1.0])
+@every("angle, side", [(0.0, 1.0), (np.pi, -1.0)])
 def test_static_torque_at_dead_centres_is_closed_form(angle, side, way):
     a, b, o, load, ratio = 0.02, 0.015, 0.01, 1000.0, 1.0 / 3.0
     friction = {name: ks.PinFriction(1.0, rho) for name, rho in {"O": o, "A": a, "B": b}.items()}
@@ -72,7 +72,7 @@ def test_static_torque_at_dead_centres_is_closed_form(angle, side, way):
     assert s.balancing_torque == pytest.approx(way * torque, rel=1e-13)
 
 
-@pytest.mark.parametrize("speed", [12.0, -12.0])
+@every("speed", [12.0, -12.0])
 def test_a_guide_alone_has_its_closed_form(speed):
     drive = {"crank_speed": speed, "loads": ks.Gravity()}
     free = ks.solve(STEEP, TURN, **drive)
@@ -153,7 +153,7 @@ def test_jamming_guide_is_refused_with_angles():
     assert np.array_equal(s.converged, ~jams)
 
 
-@pytest.mark.parametrize(("half_length", "jams"), [(0.0201, False), (0.0199, True)])
+@every("half_length, jams", [(0.0201, False), (0.0199, True)])
 def test_yoke_jams_with_a_short_shoe(half_length, jams):
     yoke, angle = ks.scotch_yoke(0.1, slider=ks.Link(3.0)), np.array([np.pi / 2])
     friction = {"guide": ks.GuideFriction(0.2, half_length)}
@@ -161,7 +161,7 @@ def test_yoke_jams_with_a_short_shoe(half_length, jams):
     assert (s.friction_margin[0] <= 0.0) == jams
 
 
-@pytest.mark.parametrize("factor", [0.999, 1.001])
+@every("factor", [0.999, 1.001])
 def test_centric_guide_jams_at_the_known_coefficient(factor):
     friction = {"guide": ks.GuideFriction(factor * np.sqrt((0.13 / 0.1) ** 2 - 1.0))}
     s = ks.solve(STEEP, np.array([np.pi / 2]), crank_speed=1.0, friction=friction, on_gap="nan")
@@ -327,7 +327,7 @@ def parallelogram(angles, assembly):
     return ks.solve(four_bar, angles, crank_speed=10.0, loads=ks.Gravity(), friction=LEGS)
 
 
-@pytest.mark.parametrize(("angle", "assembly"), [(0.7, "open"), (2.2, "crossed")])
+@every("angle, assembly", [(0.7, "open"), (2.2, "crossed")])
 def test_friction_follows_the_side_of_a_change_point(angle, assembly):
     """The same posture by its sign, off the change points: an assembly that keeps to one side passes none."""
     passing, *sides = (parallelogram([angle], side) for side in (assembly, 1, -1))
@@ -395,7 +395,7 @@ def equations(factors, free, columns, kinds=None):
     return FrictionEquations(laws, names, of[0], of[1:])
 
 
-@pytest.mark.parametrize(("load", "kappa"), [(3.0, 0.4), (-3.0, 0.4), (3.0, -0.4), (-3.0, -0.4)])
+@every("load, kappa", [(3.0, 0.4), (-3.0, 0.4), (3.0, -0.4), (-3.0, -0.4)])
 def test_one_force_is_its_closed_form(load, kappa):
     """N = N0 + kappa mu |N|."""
     made = equations([0.5], [load], [[kappa]])
@@ -412,7 +412,7 @@ def test_coupled_friction_forces_satisfy_their_laws():
     np.testing.assert_allclose(found, factors * np.abs(free + columns @ found), rtol=1e-15)
 
 
-@pytest.mark.parametrize(("kappa", "jams"), [(0.99, False), (1.01, True)])
+@every("kappa, jams", [(0.99, False), (1.01, True)])
 def test_it_jams_where_feedback_reaches_one(kappa, jams):
     made = equations([1.0], [3.0], [[kappa]])
     with np.errstate(invalid="ignore"):
@@ -433,7 +433,7 @@ PUMP = ks.crank_slider(0.1, 0.2, slider=ks.Link(2.0))
 AROUND = np.linspace(0.1, 2 * np.pi, 30)
 
 
-@pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
+@every("speed, acceleration, stands", [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
 def test_a_crank_at_rest_has_no_friction_direction(speed, acceleration, stands):
     s = ks.solve(PUMP, AROUND, crank_speed=speed, crank_acceleration=acceleration)
     assert bool(jamming.problem_at_rest(s)) == stands
@@ -443,8 +443,8 @@ def test_friction_converges_to_the_last_digit():
     assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]
 
 
-@pytest.mark.parametrize(
-    ("margin", "residuals", "passes"),
+@every(
+    "margin, residuals, passes",
     [
         (0.5, (1e-16,), (3,)),
         (0.5, (1e-4, 1e-9, 1e-16), (3, 6, 12)),

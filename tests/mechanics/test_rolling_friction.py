@@ -140,7 +140,7 @@ def test_case_file_has_the_arm(tmp_path):
 
 
 @every(
-    ("arm", "words"),
+    "arm, words",
     [
         ("-1 mm", "must be at least 0 m"),
         ("nan mm", "rolling_arm"),

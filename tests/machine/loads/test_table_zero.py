@@ -185,7 +185,7 @@ def test_each_slider_has_its_own_dead_centre():
 
 
 @every(
-    ("mechanism", "load", "message"),
+    "mechanism, load, message",
     [
         (FOUR_BAR, ks.Force(TABLE, at="B"), "table from its TDC: the mechanism has no slider"),
         (
@@ -208,7 +208,7 @@ def test_a_dead_centre_that_is_not_there_is_refused(mechanism, load, message):
 
 
 @every(
-    ("options", "message"),
+    "options, message",
     [
         ({"zero": "top"}, "zero must be text of a number and a unit.*\"90 deg\"; or write 'TDC' or 'BDC'"),
         ({"zero": "3 mm"}, "zero .*does not measure the same as"),
@@ -229,7 +229,7 @@ def test_what_is_no_zero_or_sense_is_refused(options, message):
 
 
 @every(
-    ("options", "speed", "message"),
+    "options, speed, message",
     [
         ({}, 100.0, "-9000 N at 15 deg, is 75 deg from the dead centres of 'slider', TDC at 90 deg.*zero=\"TDC\""),
         ({"zero": 0.0}, 100.0, None),

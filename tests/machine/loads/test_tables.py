@@ -18,7 +18,7 @@ def solved(table, angles=ANGLES, speed=100.0, **options):
     return ks.solve(PUMP, angles, crank_speed=speed, loads=ks.ProcessForce(table), **options)
 
 
-@pytest.mark.parametrize("speed", [100.0, -100.0])
+@every("speed", [100.0, -100.0])
 def test_diagram_follows_the_current_stroke(speed):
     s = solved(DIAGRAM, speed=speed)
     forward, back = (np.interp(s.slider_position, X, values) for values in (DIAGRAM.y, DIAGRAM.back))
@@ -55,7 +55,7 @@ def test_derivatives_go_through_the_travel_of_a_table():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("over", ["angle", "travel"])
+@every("over", ["angle", "travel"])
 def test_any_load_takes_a_table(over):
     x, y = ([0.0, 2.0, 4.0], [1.0, 5.0, 2.0]) if over == "angle" else ([-2.0, 0.5, 2.0], [1.0, 5.0, 2.0])
     table = ks.Table(x, y, over=over)
@@ -132,7 +132,7 @@ def two_turns(back):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("back", [False, True])
+@every("back", [False, True])
 def test_second_turn_of_a_branch_is_known(back):
     """Work and peaks of both turns, beside values at many crank angles by hand."""
     scene, table = two_turns(back)
@@ -223,7 +223,7 @@ def test_traced_rows_are_refused_with_a_remedy(double):
 
 
 @every(
-    ("text", "options", "words"),
+    "text, options, words",
     [
         ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
         ("crank angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
