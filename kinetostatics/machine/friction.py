@@ -11,9 +11,7 @@ from ..numbers.paths import Batched
 from .links import Rolling, Sliding, Turning, present
 
 COEFFICIENT = checks.Number(
-    "1",
-    low=0.0,
-    usual=checks.PlausibleRange(2.0, "no surface has this much friction; is it a size, or in percent?"),
+    "1", low=0.0, usual=checks.PlausibleRange(2.0, "no surface has this much friction; is it a size, or in percent?")
 )
 SIZE = checks.Number("m", low=0.0, strict=True)
 ROLLING_ARM = checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.02, "is it in mm?", 1e-3))

@@ -33,16 +33,7 @@ from ..machine.links import Wrench, acceleration_of, load, virtual_work
 from ..machine.loads import balance_shafts, spring_masses
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
-from ..numbers.planar import (
-    add_vectors,
-    minus,
-    moment,
-    number_or_zero,
-    plus,
-    product,
-    scale_vector,
-    subtract_vectors,
-)
+from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product, scale_vector, subtract_vectors
 from . import energy_contact, ground, shaft
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push

@@ -15,16 +15,7 @@ from ..machine.group import FRAME
 from ..machine.links import CamDriven, Meshing, Turning, present
 from ..machine.supports import Support
 from ..numbers.arithmetic import sign
-from ..numbers.planar import (
-    add_vectors,
-    dot,
-    left,
-    length,
-    minus,
-    product,
-    scale_vector,
-    vector_or_zero,
-)
+from ..numbers.planar import add_vectors, dot, left, length, minus, product, scale_vector, vector_or_zero
 
 
 def pair_forces(state, name, joining) -> dict[str, Support]:

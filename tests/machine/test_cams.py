@@ -47,6 +47,7 @@ def polar(pin, angles):
     return np.array(rows).T
 
 
+@pytest.mark.slow
 @every("amplitude, mean", LAWS)
 def test_cosine_law_derivatives_at_singular_angle(amplitude, mean):
     """Against the naive radicand with its signed root, with 80 digits; r' and r'' relative to r."""

@@ -300,6 +300,7 @@ def test_engines_agree(name, assembly, interpreted):
         np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-13, atol=1e-12)
 
 
+@pytest.mark.slow
 @every(
     "made",
     [

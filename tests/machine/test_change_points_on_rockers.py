@@ -164,12 +164,12 @@ def errors(made, angle):
     }
 
 
-@every("inner", INNER)
-@every("outer", ["parallelogram", "antiparallelogram", "deltoid", "far"])
+@every("inner, outer", PAIRS[::2])
 def test_forces_obey_newton(inner, outer):
     assert max(errors(chain(inner, outer), 1.234).values()) < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("inner", ["crank-rocker", "drag link"])
 @every("outer", ["antiparallelogram", "near"])

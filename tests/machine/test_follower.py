@@ -133,11 +133,7 @@ def solved(law=LAW, offset=0.0, angles=ANGLES):
 def test_the_contact_is_as_far_aside_as_the_velocity():
     s = solved()
     assert_allclose(s.measure("contact_place"), -LAW(ANGLES).velocity, rtol=1e-15)
-    assert_allclose(
-        s.measure("curvature_radius"),
-        LAW(ANGLES).position + LAW(ANGLES).acceleration,
-        rtol=1e-15,
-    )
+    assert_allclose(s.measure("curvature_radius"), LAW(ANGLES).position + LAW(ANGLES).acceleration, rtol=1e-15)
 
 
 def test_guide_bears_the_contact_moment():
@@ -150,8 +146,7 @@ def test_guide_bears_the_contact_moment():
 
 def test_no_side_force_whatever_the_pressure():
     assert_allclose(
-        solved().scalar("contact_force"),
-        2.0 * 144.0 * LAW(ANGLES).acceleration + 5e3 * LAW(ANGLES).position,
+        solved().scalar("contact_force"), 2.0 * 144.0 * LAW(ANGLES).acceleration + 5e3 * LAW(ANGLES).position
     )
 
 

@@ -69,6 +69,7 @@ def test_curvature_of_the_cosine_law_against_40_digits():
             assert found == pytest.approx(float(abs(first) ** 3 / mp.im(mp.conj(first) * second)), rel=1e-10)
 
 
+@pytest.mark.slow
 @every("side", ["disk", "ring"])
 @every("name", CAMS)
 def test_the_roller_touches_the_cam_and_never_cuts_it(name, side):
@@ -79,6 +80,7 @@ def test_the_roller_touches_the_cam_and_never_cuts_it(name, side):
     assert_allclose(distance, 0.02, rtol=0, atol=1e-8)
 
 
+@pytest.mark.slow
 @every("side", ["disk", "ring"])
 def test_other_cutter_cuts_the_same_curve(side):
     """It touches the surface where the roller does, its centre a cutter's radius away from it."""
@@ -164,6 +166,7 @@ def test_limits_name_what_exceeds_them():
     assert second.endswith("less than 0.05")
 
 
+@pytest.mark.slow
 @every("name", CAMS)
 @every("degrees", [3.0, 20.0, 35.0])
 def test_base_circle_gives_the_largest_angle(name, degrees):
@@ -367,10 +370,7 @@ def test_roller_conforms_to_a_ring_not_a_disk():
     assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    "rise",
-    quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1),
-)
+@pytest.mark.parametrize("rise", quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1))
 def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
     """Against 200 000 points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""
     height, width = 1e-7, np.radians(0.1)

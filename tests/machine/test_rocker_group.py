@@ -10,16 +10,7 @@ from numpy.testing import assert_array_equal
 import kinetostatics as ks
 from support import multibody
 from support.every import every
-from support.machines import (
-    ANGLES,
-    FourBar,
-    assert_equal,
-    bar_results,
-    largest,
-    motions,
-    planar,
-    turning,
-)
+from support.machines import ANGLES, FourBar, assert_equal, bar_results, largest, motions, planar, turning
 from support.multibody import Body
 from support.strategies import dimension
 
@@ -136,6 +127,7 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
         assert bar.assembly * turning(bar.pivot - A, B - A) > 0
 
 
+@pytest.mark.slow
 @every("kind", ["stretched", "folded", "folded, long coupler"])
 @every("power, assembly", [(2, 1), (10, 1), (14, -1)])
 def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
@@ -149,6 +141,7 @@ def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
     assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
 
 
+@pytest.mark.slow
 @every("longer, assembly", [(1e2, 1), (1e4, -1), (1e6, 1)])
 def test_error_with_a_long_link_is_of_rounded_lengths(longer, assembly):
     """Differences of squares would cost twice as many digits as the long link has more than the short one."""

@@ -258,6 +258,7 @@ def test_first_harmonics_may_turn_with_the_guide():
         assert_allclose(one, other, rtol=0, atol=1e-16)
 
 
+@pytest.mark.slow
 def test_zero_harmonic_costs_nothing():
     few, many = ks.cams.Harmonic((0.3, 0.01)), ks.cams.Harmonic((0.3, 0.01, 0.0, 0.0), (0.0,))
     plain, kept = (ks.compile(scene(cam), "balancing_torque") for cam in (few, many))

@@ -64,8 +64,7 @@ def test_arm_changes_the_torque_of_the_saw():
 
 
 @pytest.mark.parametrize(
-    ("engine", "follower"),
-    [("numpy", False), ("numpy", True), pytest.param("compiled", False, marks=pytest.mark.slow)],
+    ("engine", "follower"), [("numpy", False), ("numpy", True), pytest.param("compiled", False, marks=pytest.mark.slow)]
 )
 def test_programs_and_derivatives(engine, follower):
     scene, contact = rolling_follower() if follower else (ROLLING, "cam")

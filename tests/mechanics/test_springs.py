@@ -180,6 +180,7 @@ def test_a_balancing_spring_leaves_the_exact_force(name, flint):
     assert np.max(np.abs(errors)) < 1.7e-16 * spring
 
 
+@pytest.mark.slow
 @every("guide", [LEVEL, INCLINED])
 def test_a_stiffening_spring_leaves_the_exact_force(guide, flint):
     """Within 4e-16 of the spring's force; by a rate that changes with the crank angle it were 7e-16."""

@@ -18,15 +18,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import cos, sin
-from ...numbers.planar import (
-    left,
-    number_or_zero,
-    rotate,
-    rotate_back,
-    scale_vector,
-    subtract_vectors,
-    vector_or_zero,
-)
+from ...numbers.planar import left, number_or_zero, rotate, rotate_back, scale_vector, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..dimensions import Angle, Span
 from ..group import Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved

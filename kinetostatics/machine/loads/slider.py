@@ -24,16 +24,7 @@ import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.planar import (
-    add_vectors,
-    minus,
-    number_or_zero,
-    plus,
-    product,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-)
+from ...numbers.planar import add_vectors, minus, number_or_zero, plus, product, rotate, scale_vector, subtract_vectors
 from ..dimensions import ORIGIN, Span
 from ..links import acceleration_of, present
 from ..supports import Support

@@ -16,11 +16,7 @@ from support.every import every
 RATIOS = 1, -1, 2, -2, Fraction(1, 2), -1.5
 SHAFT = ks.BalanceShaft(0.06, -2, 0.7, (0.2, -0.1), 0.03, mass=4.0)
 GRAVITY = ks.Gravity(9.81, -1.2)
-LINKS = {
-    "crank": ks.Link(2.0, (0.03, 0.01), 0.02),
-    "coupler": ks.Link(1.0, (0.1, 0.01), 0.01),
-    "slider": ks.Link(4.0),
-}
+LINKS = {"crank": ks.Link(2.0, (0.03, 0.01), 0.02), "coupler": ks.Link(1.0, (0.1, 0.01), 0.01), "slider": ks.Link(4.0)}
 
 
 def pump(*shafts, speed=30.0, acceleration=50.0, **changes):

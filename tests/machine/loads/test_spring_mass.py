@@ -302,12 +302,7 @@ def test_a_hint_names_the_surge_ratio_below_five():
     [
         ([0.0, 400.0], [0.0, 1.0], 10.0, None),  # the first has no mass to swing
         ([4.0, 400.0], [1.0, 1.0], [0.1, 10.0], None),  # each at its own speed
-        (
-            [4.0, 400.0],
-            [0.1, 1.0],
-            10.0,
-            "ratio is 1.99, .*With 0.1 kg it swings between its ends at 19.87 rad/s",
-        ),
+        ([4.0, 400.0], [0.1, 1.0], 10.0, "ratio is 1.99, .*With 0.1 kg it swings between its ends at 19.87 rad/s"),
         ([400.0, 400.0], [1.0, 1.0], [10.0, 20.0], "ratio is 3.14, .*drives it at 20 rad/s"),
     ],
 )

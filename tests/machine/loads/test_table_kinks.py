@@ -5,17 +5,12 @@ from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.links import Joint
 from kinetostatics.machine.loads import table_pieces
-from kinetostatics.machine.loads.table_pieces import (
-    KINK_TOLERANCE,
-    STOP_SAMPLES,
-    TURN,
-    kink_rows,
-    stops_and_crossings,
-)
+from kinetostatics.machine.loads.table_pieces import KINK_TOLERANCE, STOP_SAMPLES, TURN, kink_rows, stops_and_crossings
 from kinetostatics.numbers.sign_changes import SAMPLE_OFFSET
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.every import every
@@ -189,6 +184,7 @@ def exactly(table, angle):
     return y[row] + (y[row + 1] - y[row]) / (x[row + 1] - x[row]) * (place - x[row])
 
 
+@pytest.mark.slow
 @every("first, turns", [(0.0, 1), (0.1, 2), (-2.7, 1), (-777.3, 2)])
 def test_values_by_angle_lie_within_their_rounding(first, turns):
     rng, period = np.random.default_rng(7), 2 * np.pi * turns

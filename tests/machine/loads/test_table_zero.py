@@ -188,11 +188,7 @@ def test_each_slider_has_its_own_dead_centre():
     "mechanism, load, message",
     [
         (FOUR_BAR, ks.Force(TABLE, at="B"), "table from its TDC: the mechanism has no slider"),
-        (
-            V_TWIN,
-            ks.Torque(TABLE, on="crank"),
-            "has sliders 'slider', 'slider2': choose one, slider=",
-        ),
+        (V_TWIN, ks.Torque(TABLE, on="crank"), "has sliders 'slider', 'slider2': choose one, slider="),
         (V_TWIN, ks.Torque(ks.Table(AFTER_TDC, GAS, zero="TDC", slider="ram"), on="crank"), "'ram'"),
         (SHORT, ks.ProcessForce(TABLE), "crank-slider does not close at all crank angles, so 'slider' has no TDC"),
         (
@@ -253,10 +249,7 @@ def test_a_peak_far_from_the_dead_centres_gives_a_hint(options, speed, message):
             warnings.warn(given[0].message, stacklevel=1)
 
 
-@every(
-    "angle",
-    [0.0, np.pi, np.radians(15.0), np.radians(-40.0)],
-)
+@every("angle", [0.0, np.pi, np.radians(15.0), np.radians(-40.0)])
 def test_a_peak_near_a_dead_centre_gives_no_hint(angle):
     table = ks.Table(AFTER_TDC, GAS)
     machine = ks.crank_slider(0.05, 0.2, guide_angle=angle)
