@@ -9,7 +9,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Axis
-from ..numbers.planar import add_vectors, number_or_zero, rotate
+from ..numbers.planar import add_vectors, dot, number_or_zero, rotate, vector_or_zero
 from .dimensions import ORIGIN, Angle, Span
 from .links import Joint, LinkMotion, present
 
@@ -69,7 +69,7 @@ class Guide(checks.Checked):
             object.__setattr__(self, "exact", Axis.of(self.exact))
 
     @classmethod
-    def at(cls, guide_angle=0.0, guide_offset=0.0):
+    def at(cls, guide_angle=0.0, guide_offset=0.0) -> "Guide":
         """Guide at an angle and an offset from O.
 
         Parameters
@@ -78,10 +78,6 @@ class Guide(checks.Checked):
             Direction in which the slider's coordinate grows, rad, counter-clockwise from +x.
         guide_offset : float or array
             Distance of the guide from O along its left normal, m; negative where it passes to the right of O.
-
-        Returns
-        -------
-        Guide
 
         Raises
         ------
@@ -102,7 +98,7 @@ class Guide(checks.Checked):
         return cls(guide_angle, guide_offset)
 
     @classmethod
-    def through(cls, W1, W2):
+    def through(cls, W1, W2) -> "Guide":
         """Guide through two fixed points; direction and offset are rounded once.
 
         Its parameters are `exact` and `guide_offset`; use `Guide.at` to vary the angle.
@@ -111,10 +107,6 @@ class Guide(checks.Checked):
         ----------
         W1, W2 : (x, y)
             m; the slider's coordinate grows from W1 to W2. Numbers, not batches.
-
-        Returns
-        -------
-        Guide
 
         Raises
         ------
@@ -188,6 +180,11 @@ class Guide(checks.Checked):
 
 SliderGuide = Annotated[Guide, checks.InstanceOf(Guide, "made by Guide.at or .through")]
 """Type of a field for a guide, with its rule."""
+
+
+def known_slider(pin, direction):
+    """Motion of a slider at a known pin, and its coordinate along the guide."""
+    return LinkMotion(pin, direction, None, None), Joint(*(dot(vector_or_zero(part), direction) for part in pin))
 
 
 def slider_motion(position, reach, travel, line):

@@ -17,8 +17,8 @@ from ..machine.loads.points import PlacedLoad, point_on_link
 from ..machine.supports import pairs_of
 from ..numbers import checks
 from ..numbers.planar import cross, minus, product, scale_vector
+from .ground import pair_forces
 from .load_values import evaluate_load, numbered_titles, slider_push
-from .pair_forces import pair_forces
 
 REACTION, INERTIA, WEIGHT, LOAD, DRIVE = "reaction", "inertia", "weight", "load", "drive"
 """Kinds of actions on a link."""

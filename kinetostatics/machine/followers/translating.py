@@ -20,12 +20,12 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
-from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
+from ...numbers.planar import minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
 from ..cams.roller import Face, OptionalRoller
 from ..dimensions import within
 from ..group import EMPTY, FRAME, Declaration, GroupLink, Output, Point, Resolved
-from ..guide import Guide, SliderGuide, slider_motion
-from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
+from ..guide import Guide, SliderGuide, known_slider, slider_motion
+from ..links import Joint, Link, Slide, Sliding, Wrench
 from .follower import Follower
 
 TERMS = {
@@ -79,9 +79,7 @@ class GuidedFollower(Follower):
 
     def follow(self, placement, joints):
         """Place the follower at its known pin."""
-        pin, direction = joints[self.pin], self.guide.direction
-        travel = Joint(*(dot(direction, vector_or_zero(part)) for part in pin))
-        self._enter(placement, LinkMotion(pin, direction, None, None), travel)
+        self._enter(placement, *known_slider(joints[self.pin], self.guide.direction))
 
     def _enter(self, placement, follower, travel):
         self.enter(placement, travel, {self.pin: follower.joint}, {"follower": follower}, {"follower": travel})

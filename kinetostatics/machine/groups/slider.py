@@ -28,7 +28,7 @@ from ...numbers.planar import (
 )
 from ..dimensions import Span, within
 from ..group import FRAME, Bar, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
-from ..guide import Guide, SliderGuide, slider_motion
+from ..guide import Guide, SliderGuide, known_slider, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, link_between
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
@@ -213,11 +213,9 @@ class SliderGroup(checks.Checked, Branch, Group):
 
     def follow(self, placement, joints):
         """Place coupler and slider at known joints."""
-        pin, direction = joints[self.pin], self.guide.direction
-        coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
-        cosine, sine = rotate_back(coupler.direction, direction)
-        travel = Joint(*(rotate_back(part, direction)[0] for part in pin))
-        slider = LinkMotion(pin, direction, None, None)
+        slider, travel = known_slider(joints[self.pin], self.guide.direction)
+        coupler = link_between(placement.joints[self.on], joints[self.pin], self.coupler_length)
+        cosine, sine = rotate_back(coupler.direction, self.guide.direction)
         motion = SliderMotion(coupler, slider, sine, cosine, (cosine, None), None, travel)
         self.enter(placement, motion, travels={"slider": travel})
 

@@ -23,7 +23,7 @@ from ...numbers.planar import (
 )
 from ..dimensions import Angle, within
 from ..group import FRAME, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
-from ..guide import Guide, SliderGuide, slider_motion
+from ..guide import Guide, SliderGuide, known_slider, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning
 
 MIN_SLOT_SINE = 1e-9
@@ -58,8 +58,6 @@ def place(joint, guide, slot_angle):
     travel = Joint(x + back, first[0] - lean * first[1], second[0] - lean * second[1])
     slider = slider_motion(joint.position, (back, -rise), travel, guide)
     return YokeMotion(LinkMotion(joint, rotate(slot, guide.direction), None, None), slider, travel, rise, slot)
-
-    """Block and slider for a given joint (kernel); a guide direction of None is +x, an offset of None is zero."""
 
 
 def resolve(motion, guide, block_load, slider_load, push):
@@ -177,11 +175,10 @@ class YokeGroup(checks.Checked, Group):
 
     def follow(self, placement, joints):
         """Place block and slider at known joints."""
-        joint, pin, guide = placement.joints[self.on], joints[self.pin], self.guide.line
-        travel = Joint(*(rotate_back(vector_or_zero(part), guide.direction)[0] for part in pin))
+        joint, guide = placement.joints[self.on], self.guide.line
+        slider, travel = known_slider(joints[self.pin], self.guide.direction)
         rise = minus(rotate_back(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
-        slider = LinkMotion(pin, self.guide.direction, None, None)
         block = LinkMotion(joint, rotate(slot, guide.direction), None, None)
         self.enter(placement, YokeMotion(block, slider, travel, rise, slot), travels={"slider": travel})
 

@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import exp, log
 from ...numbers.planar import minus, plus, product
 from ..links import present
-from .load import Symbol
+from .load import Symbol, angles_text
 from .slider import SliderLoad
 
 _nodes, _weights = np.polynomial.legendre.leggauss(16)
@@ -152,16 +152,14 @@ class GasSpring(SliderLoad):
         with np.errstate(invalid="ignore"):
             gone = volume <= 0.0
         if gone.any():
-            angle = np.degrees(np.unique(np.broadcast_to(motion.crank_angle, gone.shape)[gone]))
-            many = ", ".join(f"{part:.6g}" for part in angle[:3])
             worst = np.unravel_index(np.nanargmin(volume), volume.shape)
             given, area, at, left = (
                 np.broadcast_to(part, gone.shape)[worst] for part in (self.volume, self.area, self.at, volume)
             )
             yield checks.Problem(
-                f"{self.title}: no volume is left at {angle.size} crank angles, {'the first ' * (angle.size > 3)}"
-                f"{many} deg. Its {given:.6g} m3 at {at:.6g} m end at {at - self.side * given / area:.6g} m, but the "
-                f"slider goes on by up to {-left / area:.6g} m. Give more volume or less area, or the other side",
+                f"{self.title}: no volume is left {angles_text(motion, gone)}. Its {given:.6g} m3 at {at:.6g} m end at "
+                f"{at - self.side * given / area:.6g} m, but the slider goes on by up to {-left / area:.6g} m. Give "
+                "more volume or less area, or the other side",
                 gone,
             )
 

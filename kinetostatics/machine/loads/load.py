@@ -199,6 +199,13 @@ def has_no_user_code(item):
     return isinstance(item, Load) and not callable(item.value_now)
 
 
+def angles_text(motion, where):
+    """Words for the crank angles of a motion at which a mask holds, the first three in degrees."""
+    angle = np.degrees(np.unique(np.broadcast_to(motion.crank_angle, where.shape)[where]))
+    many = ", ".join(f"{part:.6g}" for part in angle[:3])
+    return f"at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} deg"
+
+
 def value_of(item):
     """Force or moment of a load, also of one of the user's own: see `Load.value_now`."""
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)

@@ -29,7 +29,7 @@ from ..dimensions import of_place, within
 from ..group import FRAME, Point
 from ..links import Wrench, arm, present
 from ..supports import Support
-from .load import Load, Symbol, value_rule
+from .load import Load, Symbol, angles_text, value_rule
 
 PLACE_FORMS = 'a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y)'
 NAME = checks.Name()
@@ -315,12 +315,9 @@ class PointLoad(PlacedLoad):
             size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
             meet = np.hypot(*(first - second)) <= MEETING_DISTANCE * size
         if meet.any():
-            angle = np.unique(np.broadcast_to(motion.crank_angle, meet.shape)[meet])
-            many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
             yield checks.Problem(
-                f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
-                f"deg, so its force has no direction there; leave them out, or move a point off the line"
-                f"{self.REMEDY}",
+                f"{self.title}: the points meet {angles_text(motion, meet)}, so its force has no direction there; "
+                f"leave them out, or move a point off the line{self.REMEDY}",
                 meet,
             )
 

@@ -126,7 +126,7 @@ class Spring(SliderLoad):
     RULES = checks.Rules("spring")
 
     @classmethod
-    def balancing(cls, mass, crank_speed, free_position, on="slider", *, spring_mass=0.0):
+    def balancing(cls, mass, crank_speed, free_position, on="slider", *, spring_mass=0.0) -> "Spring":
         """Spring that balances the inertia force of a slider with a cosine law.
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
@@ -146,10 +146,6 @@ class Spring(SliderLoad):
             The slider.
         spring_mass : float
             Mass of all springs together, kg.
-
-        Returns
-        -------
-        Spring
 
         Raises
         ------
