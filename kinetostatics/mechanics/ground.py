@@ -25,18 +25,7 @@ from ..machine.links import CamDriven, Meshing, Turning, present
 from ..machine.supports import Support, places
 from ..numbers import checks
 from ..numbers.arithmetic import sign
-from ..numbers.planar import (
-    add_vectors,
-    dot,
-    left,
-    length,
-    minus,
-    moment,
-    plus,
-    product,
-    scale_vector,
-    vector_or_zero,
-)
+from ..numbers.planar import add_vectors, dot, left, length, minus, moment, plus, product, scale_vector, vector_or_zero
 from .load_values import evaluate_load
 
 

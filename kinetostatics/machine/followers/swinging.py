@@ -17,17 +17,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, cos, sin
-from ...numbers.planar import (
-    add_vectors,
-    cross,
-    dot,
-    left,
-    length,
-    number_or_zero,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-)
+from ...numbers.planar import cross, dot, left, length, number_or_zero, rotate, scale_vector, subtract_vectors
 from ..cams.roller import OptionalRoller
 from ..dimensions import Span, of_fixed_point
 from ..group import FRAME, Bar, Declaration, GroupLink, Name, Output, Point, Resolved
@@ -61,7 +51,7 @@ def place(swing, pivot, arm_length, side):
     reach = scale_vector(arm_length, direction)
     aside = left(reach)
     roller = Joint(
-        add_vectors(pivot, reach),
+        (pivot[0] + reach[0], pivot[1] + reach[1]),
         scale_vector(ratio, aside),
         subtract_vectors(scale_vector(slope, aside), scale_vector(ratio * ratio, reach)),
     )

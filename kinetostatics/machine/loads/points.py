@@ -13,17 +13,7 @@ import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import guarded_divisor, sqrt
-from ...numbers.planar import (
-    add_vectors,
-    dot,
-    length,
-    moment,
-    plus,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-    vector_or_zero,
-)
+from ...numbers.planar import dot, length, moment, plus, rotate, scale_vector, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..dimensions import of_place, within
 from ..group import FRAME, Point
@@ -483,6 +473,5 @@ class PointDamper(PointLoad):
         square = dot(slope, slope)
         near = MEETING_SQUARE * (sum(dot(part, part) for part in positions) + square)
         share = near / (near + dot(d, d) + MIN_SQUARE)
-        return add_vectors(
-            d, scale_vector(MEETING_LOOKAHEAD * sqrt(near / (square + MIN_SQUARE)) * share * share, slope)
-        ), slope
+        ahead = MEETING_LOOKAHEAD * sqrt(near / (square + MIN_SQUARE)) * share * share
+        return (d[0] + ahead * slope[0], d[1] + ahead * slope[1]), slope
