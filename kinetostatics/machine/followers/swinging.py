@@ -93,8 +93,12 @@ class SwingingFollower(Follower):
         it by its name.
     pin, pivot_name : str
         Names of the roller centre and of the pivot.
-    label, plane, roller
-        As for `RollerFollower`.
+    label : str
+        Appended to the names of link and forces of a second swinging follower in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
+    roller : Roller, optional
+        Size and material of the roller, for its contact pressure.
 
     Raises
     ------

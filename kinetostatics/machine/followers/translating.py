@@ -221,8 +221,10 @@ class FlatFollower(GuidedFollower):
         Reference joint `pin`, along the guide; springs and other loads act on it by its name.
     pin : str
         Name of the point of the face on the guide.
-    label, plane
-        As for `RollerFollower`.
+    label : str
+        Appended to the names of link and forces of a second follower in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
     face : Face, optional
         Width and material of the face, for its contact pressure.
 

@@ -186,8 +186,10 @@ class LeverGroup(RPRGroup):
         Reference joint `pivot_name`, along the slot toward the block (of assembly +1).
     block : Link
         Reference joint `on`, along the slot as the lever; it turns with it.
-    label, plane
-        As for `SliderGroup`.
+    label : str
+        Appended to the names of links and forces of a second lever group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
     assembly : +1, -1, "open" or "crossed"
         +1: the slot points to the block, -1: away from it. The words are for a group on A or another pin of the crank,
         as for `slotted_lever`.
@@ -278,8 +280,10 @@ class CylinderGroup(RPRGroup):
         Reference joint `on`, along the rod into the cylinder, toward the pivot.
     cylinder : Link
         Reference joint `pivot_name`, along the cylinder toward the rod's pin.
-    label, plane
-        As for `SliderGroup`.
+    label : str
+        Appended to the names of links and forces of a second cylinder group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------

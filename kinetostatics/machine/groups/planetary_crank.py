@@ -78,8 +78,10 @@ class PlanetaryCrank(checks.Checked, Group):
         Names of the crank pin, and of the pin that it adds.
     planet : Link
         Reference joint `on`, along its direction to the pin; a counterweight has a negative distance.
-    label, plane
-        As for `SliderGroup`.
+    label : str
+        Appended to the names of links and forces of a second planet in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------

@@ -208,8 +208,10 @@ class RockerGroup(Branch, RRRGroup):
     coupler, rocker : Link
     on, pin, pivot_name : str
         Names of the joint it is attached to and of the joints it adds.
-    label, plane
-        As for `SliderGroup`.
+    label : str
+        Appended to the names of links and forces of a second rocker group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
@@ -359,8 +361,10 @@ class Dyad(RRRGroup):
         +1: the pin to the left of the direction from the first joint to the second.
     dyad1, dyad2 : Link
         Reference joints are the joints in `on`; directions run from there to the pin.
-    label, plane
-        As for `SliderGroup`.
+    label : str
+        Appended to the names of links and forces of a second dyad in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------

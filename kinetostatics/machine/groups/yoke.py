@@ -91,8 +91,10 @@ class YokeGroup(checks.Checked, Group):
         Reference joint `pin`, along the guide.
     block : Link
         Reference joint `on`, along the slot; it does not turn.
-    label, plane
-        As for `SliderGroup`.
+    label : str
+        Appended to the names of links and forces of a second yoke group in one mechanism.
+    plane : float or array, optional
+        Position along the crankshaft, m; by default the plane of the joint it is attached to (`machine.planes`).
 
     Raises
     ------
