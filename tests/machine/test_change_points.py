@@ -183,6 +183,7 @@ def test_change_points_just_below_zero_lie_in_the_turn():
 # What follows from it
 
 
+@pytest.mark.slow
 @each
 def test_reactions_alone_warn_at_change_points(name, assembly):
     """Warnings are errors in the tests."""

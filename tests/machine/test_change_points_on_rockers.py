@@ -164,6 +164,7 @@ def errors(made, angle):
     }
 
 
+@pytest.mark.slow
 @every("inner, outer", PAIRS[::2])
 def test_forces_obey_newton(inner, outer):
     assert max(errors(chain(inner, outer), 1.234).values()) < 1e-11

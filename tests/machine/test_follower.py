@@ -56,7 +56,7 @@ def test_what_is_no_law_is_refused(name, kind):
 # What followers on a guide share
 
 
-every_face = pytest.mark.parametrize("kind", [ks.RollerFollower, ks.FlatFollower])
+every_face = every("kind", [ks.RollerFollower, ks.FlatFollower])
 
 
 @every_face
@@ -153,7 +153,7 @@ def test_no_side_force_whatever_the_pressure():
 # Swinging followers on a cam that turns
 
 
-both_sides = pytest.mark.parametrize("kind", ["swinging", "swinging, other side"])
+both_sides = every("kind", ["swinging", "swinging, other side"])
 
 
 @both_sides
@@ -237,7 +237,7 @@ def test_what_no_follower_can_have_is_refused(name):
 
 
 PSI = np.linspace(0.0, 6.2, 53)
-every_kind = pytest.mark.parametrize("kind", KINDS)
+every_kind = every("kind", KINDS)
 
 
 @every_kind

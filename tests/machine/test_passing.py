@@ -13,7 +13,7 @@ from kinetostatics.studies.methods.high_precision.certified import enclosure, re
 from support.change_points import BALANCE, LEVER_LINKS, SIDES, SPEED, each_lever, lever, read, solve
 from support.every import every
 
-meeting = pytest.mark.parametrize("assembly", SIDES)
+meeting = every("assembly", SIDES)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")

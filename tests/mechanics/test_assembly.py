@@ -39,6 +39,7 @@ def test_assembly_error_names_condition_and_intervals():
     )
 
 
+@pytest.mark.slow
 @every("guides", [(0.0, 0.5), (0.0, np.pi / 2), (0.0, 0.3, 0.6), (0.0, 0.7, 1.4, 2.1)])
 @every("coupler", [0.05, 0.8])
 def test_gaps_of_several_groups_are_refused(guides, coupler):

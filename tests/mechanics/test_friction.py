@@ -43,6 +43,7 @@ def _from_rest(drawn):
     drawn.system.speed = mp.mpf(0)
 
 
+@pytest.mark.slow
 @every("kind", ["slider", "cam", "lever"])
 def test_friction_from_rest_opposes_the_coming_motion(kind):
     difference, solution = differences(kind, 3, changed=_from_rest)

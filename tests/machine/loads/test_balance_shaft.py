@@ -162,6 +162,7 @@ def test_the_period_grows_to_the_denominator(ratio, turns):
     assert ks.Scene(scene.mechanism, 1.0, loads=[SHAFT]).period == pytest.approx(2 * np.pi)
 
 
+@pytest.mark.slow
 def test_free_body_of_the_crank_and_shares():
     s = pump(SHAFT).solve(np.linspace(0.0, 6.0, 5))
     actions = free_body(s.dynamics, "crank")

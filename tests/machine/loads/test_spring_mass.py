@@ -245,6 +245,7 @@ def chain(count, stiffness, mass, frequency):
     return k * (1.0 - np.linalg.solve(matrix, right)[-1]) - 0.5 * m * frequency**2
 
 
+@pytest.mark.slow
 @every("ratio", [20.0, 5.0, 2.66, 1.3])
 def test_the_stiffness_of_the_end_is_that_of_a_chain_of_masses(ratio):
     stiffness, mass = 700.0, 3.0
@@ -324,6 +325,7 @@ def test_stiffening_springs_swing_faster():
     assert hints(1.59, cubic=1e4) == []
 
 
+@pytest.mark.slow
 def test_surge_takes_the_mass_of_the_spring():
     s = pump(3.0)
     by_default, given = ks.design.spring_surge(s), ks.design.spring_surge(pump(), 3.0)
