@@ -35,7 +35,6 @@ TERMS = {
     "load.scale": ("W", "mass times the square of the crank speed"),
     "load.across": ("Z", "weight and inertia without the pull of the mass centre toward the reference joint"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class Joint(NamedTuple):

@@ -35,7 +35,6 @@ TERMS = {
     "resolve.lean": ("tau", "tangent of the pressure angle"),
     "resolve.outward": ("N", "force on the block along the ray"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 def place(ray, radius, slope, curvature):

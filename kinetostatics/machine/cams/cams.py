@@ -30,11 +30,10 @@ TERMS = {
     "excess": ("d", "that root less the coordinate of the slider"),
     "share": ("f", "amplitude times the cosine of the singular angle"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Circle(Cam):
+class Circle(checks.Checked, Cam):
     """Circular pitch curve around O.
 
     Where O lies close to the circle, other formulas keep all digits. A batch uses them if O is close in any design, so
@@ -61,8 +60,8 @@ class Circle(Cam):
     (0.2781, 0.0731)
     """
 
-    pitch_radius: Any
-    centre: Any
+    pitch_radius: Annotated[Any, checks.Number("m", "radius", low=0.0, strict=True)]
+    centre: Annotated[Any, checks.Pair("m")]
     is_close: bool = field(default=False, init=False, repr=False)
 
     ELEMENTWISE = True
@@ -89,12 +88,7 @@ class Circle(Cam):
                 outside,
             )
 
-    RULES = checks.Rules(
-        "circle cam",
-        _outside_problems,
-        pitch_radius=checks.Number("m", "radius", low=0.0, strict=True),
-        centre=checks.Pair("m"),
-    )
+    RULES = checks.Rules("circle cam", _outside_problems)
 
     @property
     def lengths(self):

@@ -29,7 +29,6 @@ TERMS = {
     "inward": ("n", "unit vector from the pivot to O"),
     "reach": ("h", "from the pivot to the roller centre"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class SwingingMotion(NamedTuple):

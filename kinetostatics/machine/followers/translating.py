@@ -33,7 +33,6 @@ TERMS = {
     "lean": ("tau", "tangent of the pressure angle"),
     "lever": ("b", "from the pin to the contact, to the right"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,7 +85,6 @@ TERMS = {
     "turning": ("q", "rate of the line from the joint to the pivot, or of the links mirrored in it"),
     "rate": ("z", "rate of the links besides"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class _Half(NamedTuple):

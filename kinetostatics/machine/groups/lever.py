@@ -52,7 +52,6 @@ TERMS = {
     "resolve.moment": ("K", "moment of both links about the pivot"),
     "resolve.on_block": ("Q", "force of the slot on the block"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class LeverMotion(NamedTuple):

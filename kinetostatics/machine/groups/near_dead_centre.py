@@ -89,7 +89,6 @@ TERMS = {
     "departure.departing": ("b", "second derivative of the inner joint along the guide plus its place there"),
     "straight": ("j", "distance of the pin from the slider's line if the coupler were across it"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class PivotFromPin(NamedTuple):

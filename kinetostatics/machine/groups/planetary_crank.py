@@ -28,7 +28,6 @@ TERMS = {
     "tangential": ("T", "tangential tooth force of the ring on the planet"),
     "separating": ("S", "tooth force that presses the planet off the ring"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class PlanetMotion(NamedTuple):

@@ -57,7 +57,6 @@ TERMS = {
     "along_coupler": ("U", "force of the pin on the second link along the first"),
     "along_rocker": ("V", "force of the pin on the second link along itself"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class RockerMotion(NamedTuple):
@@ -108,12 +107,6 @@ def motion_of(joint, rocker_length, pivot, coupler, rocker, *last):
     """Motion of the group from direction, ratio and slope of both links, and its last fields (kernel)."""
     rocker = LinkMotion(Joint(pivot, None, None), *rocker)
     return RockerMotion(LinkMotion(joint, *coupler), rocker, joint_at(rocker, rocker_length), *last)
-
-
-def motion_between(start, end, pin, coupler_length, rocker_length):
-    """Motion of two links from their ends to a pin at known joints."""
-    coupler, rocker = link_between(start, pin, coupler_length), link_between(end, pin, rocker_length)
-    return RockerMotion(coupler, rocker, pin, (cross(coupler.direction, rocker.direction), None), None)
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
@@ -173,12 +166,13 @@ class RRRGroup(checks.Checked, Group):
 
     def follow(self, placement, joints):
         """Place both links at known joints."""
-        first, second = self.bars
         for name, point in self.joints.items():
             if point.link == FRAME:
                 placement.joints[name] = Joint(point[1:], None, None)
-        ends = placement.joints[first.start], placement.joints[second.start], joints[self.pin]
-        self._enter(placement, motion_between(*ends, first.length, second.length))
+        pin = joints[self.pin]
+        first, second = (link_between(placement.joints[bar.start], pin, bar.length) for bar in self.bars)
+        divisor = cross(first.direction, second.direction), None
+        self._enter(placement, RockerMotion(first, second, pin, divisor, None))
 
     def requirement(self, placement):
         first, second = self.bars

@@ -48,7 +48,6 @@ TERMS = {
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class SliderMotion(NamedTuple):

@@ -35,7 +35,6 @@ TERMS = {
     "resolve.along": ("Q", "force on the slider along its guide"),
     "resolve.across": ("V", "force on the slider across its guide"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class YokeMotion(NamedTuple):

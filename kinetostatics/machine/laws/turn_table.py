@@ -61,12 +61,12 @@ class TurnTable:
             self._test_noise()
         if self.force_error >= 0.01:
             remedy = ", or state their noise to have them smoothed" if noise is None else ""
-            self._warn(
-                f"{angle.size} points are too coarse or too noisy. {self.SECOND} is uncertain by up to "
+            warnings.warn(
+                f"{owner}: {angle.size} points are too coarse or too noisy. {self.SECOND} is uncertain by up to "
                 f"{self.second_derivative_error:.2g} m (the {self.VALUES} scatter by {self.noise:.2g} m about a smooth "
                 f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced. Measure more exactly, "
                 f"write more digits{remedy}",
-                stacklevel=4,
+                stacklevel=3,
             )
 
     def _test_noise(self):
@@ -79,15 +79,12 @@ class TurnTable:
             )
         if not scatter / MAX_NOISE_RATIO <= stated <= scatter * MAX_NOISE_RATIO:
             more = stated > scatter
-            self._warn(
-                f"the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the {scatter:.3g} m by which "
-                f"the {self.VALUE} values scatter; "
-                + ("true features are smoothed away too" if more else "noise is left in the curve"),
-                stacklevel=5,
+            kept = "true features are smoothed away too" if more else "noise is left in the curve"
+            warnings.warn(
+                f"{self.OWNER}: the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the "
+                f"{scatter:.3g} m by which the {self.VALUE} values scatter; {kept}",
+                stacklevel=4,
             )
-
-    def _warn(self, text, stacklevel):
-        warnings.warn(f"{self.OWNER}: {text}", stacklevel=stacklevel)
 
     @cached_property
     def splines(self):

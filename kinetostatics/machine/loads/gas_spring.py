@@ -37,7 +37,6 @@ TERMS = {
     "_compression.ratio": ("L", "logarithm of the compression V0/V"),
     "pressure_at.found": ("p", "absolute pressure of the gas"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 @dataclass(frozen=True, eq=False)

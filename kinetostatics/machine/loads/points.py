@@ -138,7 +138,6 @@ TERMS = {
     "share": ("h", "share of their motion in their direction, zero unless they meet"),
     "shortening": ("z", "rate of separation of the points over their distance"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 class ForceRule(checks.OrFunction):

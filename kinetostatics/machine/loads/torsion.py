@@ -25,7 +25,6 @@ TERMS = {
     "_angle.cosine": ("c", "cosine of the angle from where the spring is free"),
     "_angle.sine": ("s", "sine of that angle"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 DRAG = checks.Number("N*m", "an opposing value", low=0.0)
 """Rule of the magnitude of an opposing torque."""
 PROBE_ANGLES = np.linspace(0.1, 6.3, 720)

@@ -42,7 +42,6 @@ TERMS = {
     "push.meeting": ("q", "opposite of their product: positive while sections cut"),
     "push.cutting": ("z", "share of the force that acts: 1 while sections cut"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class StrokeForce(WorkForce):
