@@ -103,8 +103,7 @@ def rounded(cam, count, step):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam")
-@every("step", [1e-7, 1e-6, 1e-5])
-@every("count", [90, 360, 3600])
+@every("count, step", [(90, 1e-5), (90, 1e-7), (360, 1e-6), (3600, 1e-5), (3600, 1e-7)])
 @every("name", CAMS)
 def test_stated_force_error_is_within_ten_times(name, count, step):
     sampled = ks.cams.Sampled(*rounded(CAMS[name], count, step))
