@@ -6,15 +6,18 @@
     cam              force along the left normal of its curve, friction along the curve, at the contact
 
 They act on the `link` of the pair, and oppositely on the other link. The pin friction of a roller turns it against a
-force along the curve, so both forces of a cam pass through the contact, or ahead of it by the arm of rolling friction.
+force along the curve. So both forces of a cam pass through the contact, or ahead of it by the arm of rolling friction.
 The sign of the force gives the side of the curve that the roller touches, at its radius from the centre. If the radius
 is unknown, the contact is at the centre.
 
-The frame takes the opposite forces of its pairs, the feet of loads (springs, dampers, fixed points, couples, process
-forces that it takes), and at the "motor" the opposite of the balancing torque. By d'Alembert's principle, with the
-inertia forces I, weights W and outside forces F on the links, the sum of the forces on the frame is I + W + F, and so
-for moments about any point. I is the shaking force. It comes from the motion of the masses, the forces on the frame
-from the reactions, so each tests the other.
+The frame takes the opposite forces of its pairs and, at the "motor", the opposite of the balancing torque. It also
+carries the feet of springs and dampers, fixed points, couples, and process forces that it takes. By d'Alembert's
+principle, with the inertia forces I, weights W and outside forces F on the links,
+
+    sum of the forces on the frame = I + W + F,    and so for moments about any point.
+
+I is the shaking force. It comes from the motion of the masses, the sum on the left from the reactions, so each tests
+the other.
 """
 
 from functools import reduce
