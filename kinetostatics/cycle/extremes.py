@@ -103,8 +103,9 @@ class Extremes:
 
     @property
     def largest(self):
-        """Value of largest magnitude over the turn, with its sign."""
-        return max(self.range, key=abs)
+        """Value of largest magnitude over the turn, with its sign; positive if both signs are as large to rounding."""
+        low, high = self.range
+        return low if -low > (1.0 + 1e-12) * abs(high) else high
 
     def __len__(self):
         return len(self.angle)

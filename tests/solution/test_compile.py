@@ -270,7 +270,7 @@ def test_designs_have_the_numbers_that_they_have_alone():
     together, _ = PiecewiseTurns.of(pump(crank, mass), OUTPUTS, 192).estimated(OUTPUTS)
     for row in range(3):
         alone, _ = PiecewiseTurns.of(pump(crank[row : row + 1], mass[row : row + 1]), OUTPUTS, 192).estimated(OUTPUTS)
-        np.testing.assert_array_equal(together[:, row], alone[:, 0])
+        np.testing.assert_array_max_ulp(together[:, row], alone[:, 0], 4)  # BLAS adds rows in groups of its own
 
 
 @pytest.mark.slow
