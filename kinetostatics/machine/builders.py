@@ -32,7 +32,7 @@ def crank_slider(
     crank=Link(),
     coupler=Link(),
     slider=Link(),
-):
+) -> Mechanism:
     """Plain crank-slider: crank O-A, coupler A-B, slider B on a straight guide.
 
     Parameters
@@ -51,10 +51,6 @@ def crank_slider(
         long and the guide runs through O. Without change points they keep that side.
     crank, coupler, slider : Link
         Mass properties; a link left out has no mass and costs nothing.
-
-    Returns
-    -------
-    Mechanism
 
     Raises
     ------
@@ -85,7 +81,7 @@ def cam_crank_slider(
     coupler=Link(),
     slider=Link(),
     roller=None,
-):
+) -> Mechanism:
     """Cam-balanced crank-slider: slotted crank, block with a roller on a fixed cam, coupler and slider.
 
     Parameters
@@ -98,10 +94,6 @@ def cam_crank_slider(
         Block with roller; reference joint A, along the crank ray.
     roller : Roller, optional
         Size and material of the roller, for its contact pressure.
-
-    Returns
-    -------
-    Mechanism
 
     Raises
     ------
@@ -135,10 +127,7 @@ def cam_crank_slider(
 
 
 def crank_slider_parts(mechanism):
-    """(cam roller or None, slider group) of a mechanism by `crank_slider` or `cam_crank_slider`; None for all others.
-
-    The slider's pin may have any name.
-    """
+    """(cam roller or None, slider group) of a mechanism by `crank_slider` or `cam_crank_slider`; None for others."""
     *before, last = mechanism.groups or (None,)
     rollers = [group for group in before if isinstance(group, CamRoller)]
     if not isinstance(last, SliderGroup) or (last.on, last.label) != ("A", "") or not len(before) == len(rollers) <= 1:
@@ -162,7 +151,7 @@ def four_bar(
     crank=Link(),
     coupler=Link(),
     rocker=Link(),
-):
+) -> Mechanism:
     """Four-bar: crank O-A, coupler A-B, rocker O2-B.
 
     Parameters
@@ -178,10 +167,6 @@ def four_bar(
         of the longest make a change point. `Mechanism.turns` is the number of turns after which the branch closes.
     crank, coupler, rocker : Link
         Mass properties; a link left out has no mass and costs nothing.
-
-    Returns
-    -------
-    Mechanism
 
     Raises
     ------
@@ -199,7 +184,9 @@ def four_bar(
     return Mechanism("four-bar", Crank(crank_length, crank), (group,))
 
 
-def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(), lever=Link(), block=Link()):
+def slotted_lever(
+    crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(), lever=Link(), block=Link()
+) -> Mechanism:
     """Slotted lever: crank O-A, block at A sliding in a lever about a fixed pivot (crank shaper, Whitworth).
 
     Parameters
@@ -217,10 +204,6 @@ def slotted_lever(crank_length, *, pivot, offset=0.0, assembly=+1, crank=Link(),
         two turns. Without change points they keep that side.
     crank, lever, block : Link
         Mass properties; a link left out has no mass and costs nothing.
-
-    Returns
-    -------
-    Mechanism
 
     Raises
     ------
@@ -248,7 +231,7 @@ def scotch_yoke(
     crank=Link(),
     slider=Link(),
     block=Link(),
-):
+) -> Mechanism:
     """Scotch yoke: crank O-A, block at A in the slot of a slider on a straight guide.
 
     Parameters
@@ -261,10 +244,6 @@ def scotch_yoke(
         Angle of the slot from the guide's direction, rad; not 0 or pi.
     crank, slider, block : Link
         Mass properties; a link left out has no mass and costs nothing.
-
-    Returns
-    -------
-    Mechanism
 
     Raises
     ------

@@ -4,7 +4,7 @@ A `Pin` is a further joint fixed to a link, for more groups: ternary links, seco
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.planar import minus, number_or_zero, subtract_vectors, vector_or_zero
 from .dimensions import Span, of_fixed_point, of_point_on_link
-from .group import EMPTY, FRAME, PLANE, POSITION, Bar, Declaration, Group, Output, Part, Point, Resolved
+from .group import EMPTY, FRAME, POSITION, Bar, Declaration, Group, Name, Output, Part, Plane, Point, Resolved
 from .kinematic_state import Course, Placement, Throw
 from .links import Joint, Link, LinkMotion, Turning, joint_at, present
 
@@ -45,15 +45,10 @@ class Rotor(Link):
     Rotor(mass=4.0, centre=(0.0, 0.0), inertia=0.75, plane=0.125, couple_unbalance=(-0.375, 0.0))
     """
 
-    plane: Any = 0.0
-    couple_unbalance: Any = (0.0, 0.0)
+    plane: Annotated[Any, POSITION] = 0.0
+    couple_unbalance: Annotated[Any, checks.Pair("kg*m**2", parts=("along", "across"))] = (0.0, 0.0)
 
-    RULES = checks.Rules(
-        "Rotor",
-        **Link.RULES.rules,
-        plane=POSITION,
-        couple_unbalance=checks.Pair("kg*m**2", parts=("along", "across")),
-    )
+    RULES = checks.Rules("Rotor")
 
     @staticmethod
     def of(link):
@@ -122,16 +117,11 @@ class Crank(checks.Checked, Part):
     40.0
     """
 
-    length: Any = None
-    link: Link = Link()
-    bearings: Any = None
+    length: Annotated[Any, checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True))] = None
+    link: Annotated[Link, checks.InstanceOf(Link, "a Link")] = Link()
+    bearings: Annotated[Any, checks.Optional(BearingsRule("m", parts=("left", "right")))] = None
 
-    RULES = checks.Rules(
-        "crank",
-        length=checks.Optional(checks.Number("m", "crank length", low=0.0, strict=True)),
-        link=checks.InstanceOf(Link, "a Link"),
-        bearings=checks.Optional(BearingsRule("m", parts=("left", "right"))),
-    )
+    RULES = checks.Rules("crank")
 
     PATHS: ClassVar = {"length": "crank_length", "link": "crank"}
     references: ClassVar = {"crank": "O"}
@@ -223,17 +213,15 @@ class Pin(checks.Checked, Group):
     (2,)
     """
 
-    on: str
-    at: Any
-    name: str = "C"
-    plane: Any = None
+    on: Name
+    at: Annotated[Any, checks.Pair("m", parts=("along", "across"))]
+    name: Name = "C"
+    plane: Plane = None
 
     TRUSTED = True
     PATHS: ClassVar = {"at": "pin_", "plane": "pin_plane_"}
     hangs_on, outputs = (), EMPTY
-    RULES = checks.Rules(
-        "pin", on=checks.Name(), at=checks.Pair("m", parts=("along", "across")), name=checks.Name(), plane=PLANE
-    )
+    RULES = checks.Rules("pin")
 
     @property
     def label(self):

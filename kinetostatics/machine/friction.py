@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -11,9 +11,7 @@ from ..numbers.paths import Batched
 from .links import Rolling, Sliding, Turning, present
 
 COEFFICIENT = checks.Number(
-    "1",
-    low=0.0,
-    usual=checks.PlausibleRange(2.0, "no surface has this much friction; is it a size, or in percent?"),
+    "1", low=0.0, usual=checks.PlausibleRange(2.0, "no surface has this much friction; is it a size, or in percent?")
 )
 SIZE = checks.Number("m", low=0.0, strict=True)
 ROLLING_ARM = checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.02, "is it in mm?", 1e-3))
@@ -46,24 +44,21 @@ class PinFriction(checks.Checked, Batched):
     4373
     """
 
-    mu: Any
-    radius: Any
+    mu: Annotated[Any, COEFFICIENT]
+    radius: Annotated[Any, PIN_RADIUS]
 
     COEFFICIENTS = ("mu",)
-    RULES = checks.Rules("pin friction", mu=COEFFICIENT, radius=PIN_RADIUS)
+    RULES = checks.Rules("pin friction")
 
 
 @dataclass(frozen=True, eq=False)
 class SlidingFriction(checks.Checked, Batched):
     """Friction of a sliding pair, against its velocity."""
 
-    mu: Any
-    half_length: Any = None
+    mu: Annotated[Any, COEFFICIENT]
+    half_length: Annotated[Any, checks.Optional(SIZE)] = None
 
     COEFFICIENTS = ("mu",)
-
-
-SLIDING_RULES = {"mu": COEFFICIENT, "half_length": checks.Optional(SIZE)}
 
 
 class GuideFriction(SlidingFriction):
@@ -90,7 +85,7 @@ class GuideFriction(SlidingFriction):
     (0.1, True)
     """
 
-    RULES = checks.Rules("guide friction", **SLIDING_RULES)
+    RULES = checks.Rules("guide friction")
 
 
 class SlotFriction(SlidingFriction):
@@ -118,7 +113,7 @@ class SlotFriction(SlidingFriction):
     36.7
     """
 
-    RULES = checks.Rules("slot friction", **SLIDING_RULES)
+    RULES = checks.Rules("slot friction")
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,10 +150,10 @@ class RollerFriction(checks.Checked, Batched):
     20739
     """
 
-    mu: Any
-    pin_radius: Any
-    roller_radius: Any
-    rolling_arm: Any = 0.0
+    mu: Annotated[Any, COEFFICIENT]
+    pin_radius: Annotated[Any, PIN_RADIUS]
+    roller_radius: Annotated[Any, SIZE]
+    rolling_arm: Annotated[Any, ROLLING_ARM] = 0.0
 
     COEFFICIENTS = ("mu", "rolling_arm")
 
@@ -172,14 +167,7 @@ class RollerFriction(checks.Checked, Batched):
             if np.any(stuck := arm >= self.roller_radius):
                 yield checks.Problem(text, stuck)
 
-    RULES = checks.Rules(
-        "roller friction",
-        _rolls,
-        mu=COEFFICIENT,
-        pin_radius=PIN_RADIUS,
-        roller_radius=SIZE,
-        rolling_arm=ROLLING_ARM,
-    )
+    RULES = checks.Rules("roller friction", _rolls)
 
 
 KINDS = (PinFriction, GuideFriction, SlotFriction, RollerFriction)
@@ -200,11 +188,7 @@ def _acts(friction):
 
 @dataclass(frozen=True, eq=False)
 class JointFriction(Batched):
-    """Friction at one joint.
-
-    `sense` is the sign of the motion there, if it is known beforehand; of a roller that of the crank. It stays the
-    same at a dead centre, so values on one side of it are smooth.
-    """
+    """Friction at one joint; `sense`: sign of its motion (of a roller, of the crank) if it is known beforehand."""
 
     joint: str
     friction: Any
@@ -225,10 +209,7 @@ class JointFriction(Batched):
 
 @dataclass(frozen=True, eq=False)
 class Frictions(Mapping, Batched):
-    """Friction of a mechanism, by joint: a mapping of names to friction.
-
-    `passes` is the number of passes that update the directions of reactions.
-    """
+    """Friction of a mechanism by joint, a mapping; `passes` update the directions of reactions."""
 
     rubs: tuple[JointFriction, ...] = ()
     passes: int = PASSES_BY_SOLVER[0]

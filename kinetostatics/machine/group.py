@@ -70,7 +70,7 @@ module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin 
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -128,10 +128,7 @@ class Bar(NamedTuple):
 
 
 class Output(NamedTuple):
-    """Declaration of a quantity: SI unit, whether it is a vector, and a text that names both bodies.
-
-    `at` is the joint at which a reaction acts, where the reaction has another name.
-    """
+    """Declaration of a quantity: SI unit, vector or not, a text that names both bodies, joint `at` which it acts."""
 
     unit: str
     vector: bool = False
@@ -430,12 +427,11 @@ class LinkRule(checks.InstanceOf):
 
 
 LINK = LinkRule(Link, "a Link")
-
-
-def rules_of_parts(links, *names):
-    """Rules of a group's fields for links, names of joints, the label and the plane."""
-    rules: dict[str, Any] = dict.fromkeys(links, LINK)
-    return rules | dict.fromkeys(names, checks.Name()) | {"label": checks.Name(may_be_empty=True), "plane": PLANE}
+GroupLink = Annotated[Link, LINK]
+Name = Annotated[str, checks.Name()]
+Label = Annotated[str, checks.Name(may_be_empty=True)]
+Plane = Annotated[Any, PLANE]
+"""Types of a group's fields for links, names of joints, the label and the plane, with their rules."""
 
 
 def separation(placement, first, second):

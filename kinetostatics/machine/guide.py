@@ -1,7 +1,7 @@
 """The straight guide of a slider: a line of any inclination and offset from O, and the motion of a slider on it."""
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ..numbers import checks
 from ..numbers.arithmetic import cos, sin
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import Axis
-from ..numbers.planar import add_vectors, number_or_zero, rotate
+from ..numbers.planar import add_vectors, dot, number_or_zero, rotate, vector_or_zero
 from .dimensions import ORIGIN, Angle, Span
 from .links import Joint, LinkMotion, present
 
@@ -45,9 +45,9 @@ class Guide(checks.Checked):
     {'slider': Guide(angle=0.0, guide_offset=0.05, exact=None)}
     """
 
-    angle: Any = 0.0
-    guide_offset: Any = 0.0
-    exact: Any = None
+    angle: Annotated[Any, checks.Optional(checks.Number("rad", "guide_angle"))] = 0.0
+    guide_offset: Annotated[Any, checks.Number("m")] = 0.0
+    exact: Annotated[Any, checks.Optional(checks.Pair("1", "direction"))] = None
 
     PATHS: ClassVar = {"angle": "guide_angle"}
 
@@ -61,13 +61,7 @@ class Guide(checks.Checked):
             if np.any(np.abs(length - 1.0) > 1e-9):
                 yield f"direction must have length 1, got {length}; change x and y together, or use Guide.at"
 
-    RULES = checks.Rules(
-        "guide",
-        _unit_vector,
-        angle=checks.Optional(checks.Number("rad", "guide_angle")),
-        guide_offset=checks.Number("m"),
-        exact=checks.Optional(checks.Pair("1", "direction")),
-    )
+    RULES = checks.Rules("guide", _unit_vector)
 
     def __post_init__(self):
         super().__post_init__()
@@ -75,7 +69,7 @@ class Guide(checks.Checked):
             object.__setattr__(self, "exact", Axis.of(self.exact))
 
     @classmethod
-    def at(cls, guide_angle=0.0, guide_offset=0.0):
+    def at(cls, guide_angle=0.0, guide_offset=0.0) -> "Guide":
         """Guide at an angle and an offset from O.
 
         Parameters
@@ -84,10 +78,6 @@ class Guide(checks.Checked):
             Direction in which the slider's coordinate grows, rad, counter-clockwise from +x.
         guide_offset : float or array
             Distance of the guide from O along its left normal, m; negative where it passes to the right of O.
-
-        Returns
-        -------
-        Guide
 
         Raises
         ------
@@ -108,7 +98,7 @@ class Guide(checks.Checked):
         return cls(guide_angle, guide_offset)
 
     @classmethod
-    def through(cls, W1, W2):
+    def through(cls, W1, W2) -> "Guide":
         """Guide through two fixed points; direction and offset are rounded once.
 
         Its parameters are `exact` and `guide_offset`; use `Guide.at` to vary the angle.
@@ -117,10 +107,6 @@ class Guide(checks.Checked):
         ----------
         W1, W2 : (x, y)
             m; the slider's coordinate grows from W1 to W2. Numbers, not batches.
-
-        Returns
-        -------
-        Guide
 
         Raises
         ------
@@ -192,11 +178,17 @@ class Guide(checks.Checked):
         return Line(None if self.is_level else self.direction, present(self.guide_offset))
 
 
-def slider_motion(position, reach, travel, line):
-    """Motion of a slider from its coordinate along a guide, or its reach from a joint at `position` (kernel).
+SliderGuide = Annotated[Guide, checks.InstanceOf(Guide, "made by Guide.at or .through")]
+"""Type of a field for a guide, with its rule."""
 
-    The pin takes the shorter sum: along a level guide from O, else from that joint.
-    """
+
+def known_slider(pin, direction):
+    """Motion of a slider at a known pin, and its coordinate along the guide."""
+    return LinkMotion(pin, direction, None, None), Joint(*(dot(vector_or_zero(part), direction) for part in pin))
+
+
+def slider_motion(position, reach, travel, line):
+    """Motion of a slider from its coordinate along a level guide, else from its reach from a joint (kernel)."""
     level = line.direction is None
     pin = (
         (travel.position, number_or_zero(line.offset))

@@ -13,7 +13,7 @@ that owns its joint. `Slot` and `CamDriven` describe how a joint or link is guid
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 from ..numbers import checks
 from ..numbers.lazy import cached_property
@@ -35,7 +35,6 @@ TERMS = {
     "load.scale": ("W", "mass times the square of the crank speed"),
     "load.across": ("Z", "weight and inertia without the pull of the mass centre toward the reference joint"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class Joint(NamedTuple):
@@ -47,10 +46,7 @@ class Joint(NamedTuple):
 
 
 class LinkMotion(NamedTuple):
-    """Motion of a link: reference joint, direction (unit vector), angular velocity ratio to the crank and its slope.
-
-    The ratio is d theta / d phi, its slope d2 theta / d phi2; both None for a link that does not turn.
-    """
+    """Motion of a link: reference joint, unit vector, d theta / d phi and its slope; None: it never turns."""
 
     joint: Joint
     direction: Any
@@ -111,17 +107,12 @@ class Link(checks.Checked):
     Link(mass=160.0, centre=(1.0625, 0.0), inertia=29.875)
     """
 
-    mass: Any = 0.0
-    centre: Any = (0.0, 0.0)
-    inertia: Any = 0.0
+    mass: Annotated[Any, checks.Number("kg", low=0.0)] = 0.0
+    centre: Annotated[Any, checks.Pair("m", parts=("along", "across"), lone=True)] = (0.0, 0.0)
+    inertia: Annotated[Any, checks.Number("kg*m**2", low=0.0)] = 0.0
     plane = couple_unbalance = None
 
-    RULES = checks.Rules(
-        "Link",
-        mass=checks.Number("kg", low=0.0),
-        centre=checks.Pair("m", parts=("along", "across"), lone=True),
-        inertia=checks.Number("kg*m**2", low=0.0),
-    )
+    RULES = checks.Rules("Link")
 
     def without_mass(self):
         """The link without mass and inertia, in its plane."""
@@ -216,11 +207,7 @@ def angular_acceleration(ratio, ratio_slope, speed_squared, crank_acceleration):
 
 
 def load(link, body, speed_squared, crank_acceleration, gravity):
-    """Wrench of inertia (d'Alembert) and weight of a link about its reference joint; None for a massless link.
-
-    The moment leaves out the centripetal force, which passes through the reference joint: in a fast link it would have
-    to cancel.
-    """
+    """Wrench of inertia and weight about the reference joint, its moment without the centripetal force; or None."""
     to_centre, mass, inertia = arm(link.direction, body.along, body.across), body.mass, body.inertia
     across, pull = None, None
     if mass is not None:
@@ -272,10 +259,7 @@ class Sliding(NamedTuple):
 
 
 class Rolling(NamedTuple):
-    """Roller on a pin of `link` at `joint`, on a curve of the link `against`.
-
-    `force` acts on the roller along the left normal of its path as seen from the curve.
-    """
+    """Roller on a pin of `link`, on a curve of `against`; `force` is along the left normal of its path there."""
 
     link: str
     joint: str
@@ -289,10 +273,7 @@ class Rolling(NamedTuple):
 
 
 class Meshing(NamedTuple):
-    """Teeth of `link` in a fixed ring, at twice the place of `joint` from O: the reaction `name` acts on the link.
-
-    `force` is the name of its part across that ray.
-    """
+    """Teeth of `link` in a fixed ring at twice the place of `joint`; `force` is the part of `name` across that ray."""
 
     link: str
     joint: str
@@ -302,10 +283,7 @@ class Meshing(NamedTuple):
 
 
 class Slide(NamedTuple):
-    """Direction of a straight pair (None: +x), rate d s / d phi of the sliding link, moment of a unit force along it.
-
-    The moment is about the reference joint of the other link (None: zero).
-    """
+    """Direction of a straight pair (None: +x), rate d s / d phi, moment of a unit force about the other's joint."""
 
     direction: Any
     rate: Any

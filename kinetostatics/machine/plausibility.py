@@ -143,10 +143,7 @@ def table_hints(motion):
 
 
 def _peak_hints(motion, load, table):
-    """Hint if a table without a zero, of the shape of an indicator diagram, has its peak far from the dead centres.
-
-    The follower of a cam is no piston, so it gets none.
-    """
+    """Hint if an indicator diagram without a zero has its peak far from the dead centres; none for a follower."""
     is_follower = any(led.link == load.on for group in motion.mechanism.groups for led in group.led)
     is_piston = not is_follower and _is_diagram(table)
     rate = motion.mechanism.place(RATE_ANGLES).travels[load.on].first if is_piston else None
@@ -237,10 +234,7 @@ def compared_sizes(mechanism):
 
 
 def _still(mechanism):
-    """Yield a hint for each slider that does not move over the turn.
-
-    This needs a bar as long as the arm of its inner joint about a fixed pivot, with the slider's pin on the pivot.
-    """
+    """Yield a hint for each slider that stands on the fixed pivot of an arm as long as its bar."""
     for bar, slider, away in _on_arms(mechanism):
         are_known = checks.has_known_values(away) and checks.has_known_values(bar.length)
         if are_known and np.any(abs(away - bar.length) <= 1e-9 * bar.length):
@@ -263,10 +257,7 @@ def _on_arms(mechanism):
 
 
 def _inertia(bar, link, crank):
-    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass.
-
-    A link that extends beyond its joints, as the arm of a wiper does, is twice as long as its mass centre is far.
-    """
+    """Hint on an inertia that is improbable for mass and length, or None; 0 makes a point mass."""
     if link is None or not all(map(checks.has_known_values, (link.mass, link.centre[0], link.inertia))):
         return None
     reach = np.maximum(bar.length, 2.0 * np.abs(link.centre[0]))  # the arm of a wiper goes on beyond its joints

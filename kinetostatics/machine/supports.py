@@ -76,7 +76,12 @@ def pairs_of(mechanism) -> dict[str, Joining]:
 def places(scene) -> dict[str, Place]:
     """Places by name of a scene, or another object with a mechanism."""
     mechanism = scene.mechanism
-    found = {name: Place(pair) for name, pair in pairs_of(mechanism).items() if _is_on_frame(name, pair)}
+    found = {
+        name: Place(pair)
+        for name, pair in pairs_of(mechanism).items()
+        if pair.against == FRAME
+        if isinstance(pair.pair, CamDriven) or name in pair.part.outputs  # a user's own group needs a reaction
+    }
     counts: Counter[str] = Counter()
     for number, item in enumerate(getattr(scene, "loads", ())):
         if not hasattr(item, "rests_on_frame"):
@@ -89,8 +94,3 @@ def places(scene) -> dict[str, Place]:
             found[name] = Place(None, number, item.UNIT != "N m")
     found[MOTOR] = Place(pushes=False)
     return found
-
-
-def _is_on_frame(name, joining):
-    """Whether the frame takes the force of a pair; a pair of a user's own group needs a reaction."""
-    return joining.against == FRAME and (isinstance(joining.pair, CamDriven) or name in joining.part.outputs)

@@ -115,10 +115,7 @@ class ClosureMargin:
         return angle if (self(angle) < -SQUARE_TOLERANCE).any() else None
 
     def gaps(self, angles=()):
-        """Crank-angle intervals where the group does not close, rad, to rounding.
-
-        Candidates are a grid of half a degree, the given angles and the minima between them. Each end is a root.
-        """
+        """Crank-angle intervals where the group does not close, rad, by roots between a grid, `angles` and minima."""
         grid = np.unique(np.mod(np.concatenate([self.grid, angles, self.minima(0.0)]), self.period))
         gap = self(grid) < 0
         if gap.all():

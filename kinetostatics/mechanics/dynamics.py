@@ -33,16 +33,7 @@ from ..machine.links import Wrench, acceleration_of, load, virtual_work
 from ..machine.loads import balance_shafts, spring_masses
 from ..numbers.lazy import cached_property
 from ..numbers.parameter_tree import come_from_one_class
-from ..numbers.planar import (
-    add_vectors,
-    minus,
-    moment,
-    number_or_zero,
-    plus,
-    product,
-    scale_vector,
-    subtract_vectors,
-)
+from ..numbers.planar import add_vectors, minus, moment, number_or_zero, plus, product, scale_vector, subtract_vectors
 from . import energy_contact, ground, shaft
 from .friction import FrictionSolver, larger, smaller
 from .load_values import evaluate_load, slider_push
@@ -103,10 +94,7 @@ class Dynamics(Motion):
 
     @property
     def acting(self):
-        """Loads by link, and forces along guides by slider, that the groups resolve.
-
-        For a slider with springs and known departure, the force along the guide includes its inertia.
-        """
+        """Loads by link and forces along guides by slider; with springs of known departure including inertia."""
         loads, pushes = self.link_loads, self.pushes
         for slider in {item.on: None for item in self.loads if _is_spring(item)}:
             found = self._total_push(slider)

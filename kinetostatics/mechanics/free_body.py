@@ -17,8 +17,8 @@ from ..machine.loads.points import PlacedLoad, point_on_link
 from ..machine.supports import pairs_of
 from ..numbers import checks
 from ..numbers.planar import cross, minus, product, scale_vector
+from .ground import pair_forces
 from .load_values import evaluate_load, numbered_titles, slider_push
-from .pair_forces import pair_forces
 
 REACTION, INERTIA, WEIGHT, LOAD, DRIVE = "reaction", "inertia", "weight", "load", "drive"
 """Kinds of actions on a link."""
@@ -55,12 +55,7 @@ class Action(NamedTuple):
 def free_body(dynamics, link) -> tuple[Action, ...]:
     """All actions on a link of a scene at its crank angles; their forces and moments add up to zero.
 
-    Raises
-    ------
-    QuantityError
-        The link is unknown; the message lists the known ones.
-    ParameterError
-        A group of the user's own declares pairs whose forces do not balance a link.
+    `QuantityError` for an unknown link, `ParameterError` for pairs of a user's group that do not balance it.
     """
     links = dynamics.mechanism.links
     if not isinstance(link, str) or link not in links:

@@ -17,18 +17,9 @@ MAX_CHANGE = 1e-13
 
 
 def solve_friction(item, evaluate=None):
-    """The item with enough passes over its friction to converge, or with the largest number of passes.
+    """The item, a scene or solution, with enough passes over its friction to converge, or with the largest number.
 
-    No other function chooses passes. Each pass of `friction.FrictionEquations` doubles the digits. Most scenes need the
-    fewest passes; several joints near jamming need more.
-
-    Parameters
-    ----------
-    item : Scene or Solution
-        Scene or solution with friction.
-    evaluate : function, optional
-        ``evaluate(item) -> (margin, residual)``, each (..., N). Without it convergence is not tested, and the item gets
-        more passes than most scenes need.
+    ``evaluate(item) -> (margin, residual)`` tests convergence; without it the item gets more passes than most need.
     """
     if evaluate is None:
         return with_passes(item, max(item.friction.passes, PASSES_BY_SOLVER[1]))

@@ -74,10 +74,7 @@ class WatchedMotion(ForceFreeMotion):
 
 
 def drive_dependence(item, motion):
-    """Subset of crank_speed, crank_acceleration and sense that a load's function reads.
-
-    Code cannot depend on values that it does not read; it is assumed to depend on all values that it reads.
-    """
+    """Subset of crank_speed, crank_acceleration and sense that a load's function reads."""
     watched = without_forces(motion, WatchedMotion)
     vars(watched)["asked"] = set()
     (item.value_now if isinstance(item, Load) else item.push)(watched)
@@ -106,13 +103,7 @@ def user_value(item, motion):
 
 
 def slider_push(item, motion):
-    """Force of a load on its slider, N; the result of a user's code is checked.
-
-    Raises
-    ------
-    ParameterError
-        The result is not one number for each crank angle, or not finite where the mechanism closes.
-    """
+    """Force of a load on its slider, N; the result of a user's code is checked, or `ParameterError`."""
     if isinstance(item, Load):
         return evaluate_load(item, motion).push(motion)
     return _checked(item, item.push(without_forces(motion)), motion)
@@ -172,11 +163,7 @@ _pure_functions: Any = WeakSet()
 
 
 def require_pure(motion):
-    """Raise `ParameterError` if a user's function returns two different forces at the same crank angles.
-
-    Each function is called twice at a few angles, at its first use. If it fails there, the error is raised by the
-    caller that needs its values.
-    """
+    """Raise `ParameterError` if a user's function, on first use, returns two forces at the same crank angles."""
     for item in motion.loads:
         if has_no_user_code(item):
             continue

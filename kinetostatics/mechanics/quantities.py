@@ -57,6 +57,9 @@ class Quantity(NamedTuple):
 
 FRICTION_CHECKS = ("friction_margin", "friction_residual")
 """Quantities that measure how well friction converged."""
+OF_ALL_FRICTION = {"friction_loss": ("W", "friction"), "friction_torque": ("N m", "energy")}
+OF_ALL_FRICTION |= dict.fromkeys(FRICTION_CHECKS, ("1", "check"))
+"""Units and kinds of the quantities of all friction together."""
 _known: WeakKeyDictionary[Any, dict[str, Quantity]] = WeakKeyDictionary()
 _known_scenes: WeakKeyDictionary[Any, dict[Any, dict[str, Quantity]]] = WeakKeyDictionary()
 """Quantities of scenes by mechanism, then by joints with friction and places on the frame."""
@@ -109,7 +112,7 @@ def of_scene(scene) -> dict[str, Quantity]:
     pushed = tuple(name for name, place in places(scene).items() if place.pushes)
     known = _known_scenes.setdefault(scene.mechanism, {})
     if (friction, pushed) not in known:
-        ground = {name: _ground(name, name.removeprefix(GROUND).strip()) for name in ground_names(scene)}
+        ground = {f"{GROUND} {place}".strip(): _ground(place) for place in ("", *pushed)}
         own = of_mechanism(scene.mechanism)
         known[friction, pushed] = own | _of_friction(scene.mechanism, friction) | ground
     return known[friction, pushed]
@@ -124,20 +127,12 @@ def _of_friction(mechanism, friction):
         found[f"{joint}_friction"] = Quantity("N m" if pin else "N", f"friction {joint}", read, kind="friction")
         read = methodcaller("friction_loss_at", joint)
         found[f"{joint}_friction_loss"] = Quantity("W", f"friction loss {joint}", read, kind="friction")
-    if friction:
-        found["friction_loss"] = Quantity("W", "friction loss", attrgetter("friction_loss"), kind="friction")
-        found["friction_torque"] = Quantity("N m", "friction torque", attrgetter("friction_torque"), kind="energy")
-        for name in FRICTION_CHECKS:
-            found[name] = Quantity("1", name.replace("_", " "), attrgetter(name), kind="check")
+    for name, (unit, kind) in OF_ALL_FRICTION.items() if friction else ():
+        found[name] = Quantity(unit, name.replace("_", " "), attrgetter(name), kind=kind)
     return found
 
 
-def ground_names(scene):
-    """Names of the forces on the frame: their sum "ground", then "ground O", "ground guide" ..."""
-    return (GROUND, *(f"{GROUND} {name}" for name, place in places(scene).items() if place.pushes))
-
-
-def _ground(name, place):
+def _ground(place):
     """Force on the frame at a place, "" for the sum of all."""
     label = f"force on the frame, {place}" if place else "force on the frame"
     return Quantity("N", label, methodcaller("ground_force", *filter(None, [place])), True, "ground")
@@ -150,13 +145,7 @@ def resolved_names(scene):
 
 
 def quantity(solution, name) -> Quantity:
-    """Quantity of a solution by name.
-
-    Raises
-    ------
-    QuantityError
-        The quantity is unknown; the message lists those of the mechanism.
-    """
+    """Quantity of a solution by name; `QuantityError` with the known ones if it is unknown."""
     known = of_scene(solution)
     if not isinstance(name, str) or name not in known:
         raise QuantityError(checks.choice(f"{solution.mechanism.name}: quantity", name, tuple(known)))
@@ -164,13 +153,7 @@ def quantity(solution, name) -> Quantity:
 
 
 def without_bars(solution, name):
-    """Name of a quantity without bars: "O" for the magnitude "|O|".
-
-    Raises
-    ------
-    QuantityError
-        The quantity is unknown or not a vector.
-    """
+    """Name of a quantity without bars: "O" for "|O|"; `QuantityError` if it is unknown or no vector."""
     bars = isinstance(name, str) and len(name) > 2 and name[0] == name[-1] == "|"
     bare = name[1:-1] if bars else name
     if not quantity(solution, bare).vector and bars:
@@ -238,10 +221,7 @@ def component_sizes(solution, name):
 
 
 def largest_term(solution, name):
-    """Largest term in the sum of a force, N, or moment, N m; 0 for a motion or a user's function.
-
-    Much smaller values may be rounding of cancelling terms.
-    """
+    """Largest term in the sum of a force, N, or moment, N m, 0 for others; much smaller values may be rounding."""
     return largest_term_in(solution, unit_of(solution, name))
 
 

@@ -19,7 +19,7 @@ from ..machine.group import FRAME
 from ..machine.links import CamDriven, Turning
 from ..machine.loads import TURN
 from ..machine.supports import Joining, pairs_of
-from ..mechanics.pair_forces import pair_forces
+from ..mechanics.ground import pair_forces
 from ..numbers import checks
 from ..numbers.planar import left, rotate_back
 from .result import Row, Sized, warn_of_notes

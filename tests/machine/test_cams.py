@@ -47,7 +47,8 @@ def polar(pin, angles):
     return np.array(rows).T
 
 
-@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+@pytest.mark.slow
+@every("amplitude, mean", LAWS)
 def test_cosine_law_derivatives_at_singular_angle(amplitude, mean):
     """Against the naive radicand with its signed root, with 80 digits; r' and r'' relative to r."""
     cam = ks.cams.CosineLaw(amplitude, mean)
@@ -59,7 +60,7 @@ def test_cosine_law_derivatives_at_singular_angle(amplitude, mean):
     assert_close(1 / cam.curvature_radius(angles), 1 / curvature, 10 * ROUNDING)
 
 
-@pytest.mark.parametrize(("amplitude", "mean"), LAWS)
+@every("amplitude, mean", LAWS)
 def test_cosine_law_coupler_length_and_singular_angle(amplitude, mean):
     cam = ks.cams.CosineLaw(amplitude, mean)
     with mp.workdps(FINE_DIGITS):
@@ -70,7 +71,7 @@ def test_cosine_law_coupler_length_and_singular_angle(amplitude, mean):
             assert (mean + amplitude * other) * mp.sqrt(1 - other**2) < length
 
 
-@every(("amplitude", "mean"), LAWS)
+@every("amplitude, mean", LAWS)
 @every("guide_angle", [0.0, 0.8])
 def test_slider_follows_the_cosine_law_exactly(amplitude, mean, guide_angle):
     """Position, velocity and acceleration, at the singular angles too."""
@@ -133,7 +134,7 @@ def test_circle_close_to_o_is_off_by_rounding(direction, nearness):
                 assert abs(own - wanted) <= 1e-15 * (abs(wanted) + radius) + max(steps), float(angle)
 
 
-@pytest.mark.parametrize("centre", [(0.0, 0.0), (-0.0219, 0.0), (0.1, -0.2), (0.0, 0.29)])
+@every("centre", [(0.0, 0.0), (-0.0219, 0.0), (0.1, -0.2), (0.0, 0.29)])
 def test_circle_derivatives_equal_the_sine_rule(centre):
     """The nearer O lies to the circle, the more digits of r are lost: by radius / (radius - distance) squared."""
     cam = ks.cams.Circle(0.3, centre)
@@ -145,7 +146,7 @@ def test_circle_derivatives_equal_the_sine_rule(centre):
     assert_allclose(cam.curvature_radius(ANGLES), 0.3, rtol=1e-14 * loss)
 
 
-@pytest.mark.parametrize(("before", "after"), [(-0.0219, -0.295), (-0.295, -0.0219)])
+@every("before, after", [(-0.0219, -0.295), (-0.295, -0.0219)])
 def test_changed_circle_is_checked_again(before, after):
     made = [
         ks.Scene(ks.cam_crank_slider(ks.cams.Circle(0.3, (x, 0.0)), 2.0, slider=ks.Link(600.0)), 33.5)

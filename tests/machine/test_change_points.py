@@ -110,8 +110,8 @@ PLAIN = (
 )
 
 
-@pytest.mark.parametrize("assembly", SIDES)
-@pytest.mark.parametrize("make", PLAIN)
+@every("assembly", SIDES)
+@every("make", PLAIN)
 def test_other_machines_keep_their_side_exactly(make, assembly):
     word, number = (make(assembly=way) for way in (assembly, SIDES[assembly]))
     assert (word.turns, word.change_points, word.passes) == (1, (), False)
@@ -119,8 +119,8 @@ def test_other_machines_keep_their_side_exactly(make, assembly):
     np.testing.assert_array_equal(solve(word, angles).reaction("A"), solve(number, angles).reaction("A"))
 
 
-@pytest.mark.parametrize(
-    ("made", "words"),
+@every(
+    "made, words",
     [
         (four_bar("parallelogram", 1), "a kink at 0 deg and a kink at 180 deg"),
         (four_bar("deltoid", 1), "a jump, as A meets"),
@@ -137,7 +137,7 @@ def test_fixed_side_names_its_kinks_and_jumps(made, words):
 
 
 @pytest.mark.filterwarnings("ignore:.*stands still:kinetostatics.errors.HintWarning")
-@pytest.mark.parametrize("guide_angle", [0.0, 0.7, -2.0])
+@every("guide_angle", [0.0, 0.7, -2.0])
 def test_equal_coupler_takes_slider_through_centre(guide_angle):
     angles = np.linspace(-7.0, 7.0, 41)
     made = {
@@ -183,6 +183,7 @@ def test_change_points_just_below_zero_lie_in_the_turn():
 # What follows from it
 
 
+@pytest.mark.slow
 @each
 def test_reactions_alone_warn_at_change_points(name, assembly):
     """Warnings are errors in the tests."""
@@ -196,9 +197,7 @@ def test_reactions_alone_warn_at_change_points(name, assembly):
         solution.reaction("A")
 
 
-@pytest.mark.parametrize(
-    ("name", "places"), [("parallelogram", "0, 180"), ("4/1/3/2", "180, 540"), ("deltoid", "0, 360")]
-)
+@every("name, places", [("parallelogram", "0, 180"), ("4/1/3/2", "180, 540"), ("deltoid", "0, 360")])
 def test_torque_extremes_stay_finite(name, places):
     solution = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(12)
     torque = ks.extremes(solution, "balancing_torque")
@@ -254,8 +253,8 @@ def test_both_sides_of_a_change_point_are_exact(name, assembly):
     assert not wrong
 
 
-@pytest.mark.parametrize("assembly", SIDES)
-@pytest.mark.parametrize("name", [name for name in [*LINKAGES, *LEVERS] if name != "grazing"])
+@every("assembly", SIDES)
+@every("name", [name for name in [*LINKAGES, *LEVERS] if name != "grazing"])
 def test_exact_angle_takes_the_limit_of_both_sides(name, assembly):
     """But of the lever that spins too fast for a step of 1e-10 rad."""
     solution = solve(at_zero(name, assembly), np.array([-1e-10, 0.0, 1e-10]))
@@ -302,7 +301,8 @@ def test_engines_agree(name, assembly, interpreted):
         np.testing.assert_allclose(found.reaction("O2"), numpy.reaction("O2"), rtol=1e-13, atol=1e-12)
 
 
-@pytest.mark.parametrize(
+@pytest.mark.slow
+@every(
     "made",
     [
         four_bar("4/1/3/2", "open"),
@@ -328,8 +328,8 @@ def program(name, quantities="balancing_torque"):
     return ks.compile(ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()), quantities, engine="numpy")
 
 
-@pytest.mark.parametrize(
-    ("scene", "longer", "made"),
+@every(
+    "scene, longer, made",
     [
         (
             ks.Scene(four_bar("parallelogram", "open"), SPEED, loads=ks.Gravity()),
@@ -357,7 +357,7 @@ def test_program_refuses_a_new_change_point():
         found(0.3, {"rocker_length": 1.0})
 
 
-@pytest.mark.parametrize("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
+@every("path", ["crank_length", "coupler_length", "rocker_length", "rocker_pivot.x"])
 def test_only_mass_derivatives_are_given(path):
     found = program("4/1/3/2")
     with pytest.raises(ks.ParameterError, match=f"no derivative by {path}"):
@@ -430,8 +430,8 @@ def test_second_throw_equals_a_crank_turned_ahead(kind, ahead, assembly):
     np.testing.assert_allclose(made.change_points, both, atol=1e-14)
 
 
-@pytest.mark.parametrize("assembly", SIDES)
-@pytest.mark.parametrize("name", ["parallelogram", "kite", "deltoid", "rhombus", "near"])
+@every("assembly", SIDES)
+@every("name", ["parallelogram", "kite", "deltoid", "rhombus", "near"])
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 def test_second_throw_is_as_exact_as_the_first(name, assembly):
     """The whole turned by a quarter: crank angles near the change point stay as fine as they can be."""
@@ -459,7 +459,7 @@ def test_program_keeps_the_radius_of_the_pin():
     np.testing.assert_allclose(values, ks.Scene(other, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque)
 
 
-@pytest.mark.parametrize("at", [(0.0, 0.625), (0.375, 0.5), (-0.625, 0.0)])
+@every("at", [(0.0, 0.625), (0.375, 0.5), (-0.625, 0.0)])
 def test_second_throw_enclosures_hold(at):
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")
     from kinetostatics.studies.methods.high_precision.certified import certified
@@ -470,7 +470,7 @@ def test_second_throw_enclosures_hold(at):
     assert found.agreement < 1e-25
 
 
-@pytest.mark.parametrize("at", [(0.0, 0.0), (0.5, 0.0)])
+@every("at", [(0.0, 0.0), (0.5, 0.0)])
 def test_other_pins_have_no_change_points(at):
     if any(at):
         groups = (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.Pin("coupler", at), hung("deltoid", "open", "C"))

@@ -1,5 +1,7 @@
 """Four-bars that pass change points on the rocker of another one: double parallelograms, N-four-bars, rocked ones."""
 
+from functools import cache
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -33,11 +35,14 @@ OUTER = {
     "near": (2.5, 2.0, 1.5, "crossed"),
 }
 """Coupler, rocker, ground, in crank lengths of 1 m, and assembly of the one on its rocker."""
+PAIRS = [(list(INNER)[(place + k) % len(INNER)], outer) for place, outer in enumerate(OUTER) for k in (0, 3)]
+"""Each outer four-bar on the rockers of two inner ones, and each inner one under two or more."""
 UP = 1j
 WAYS = {"crank-rocker": UP, "other crank-rocker": UP}
 """Direction from the rocker's pivot to that of the outer one, or back, where the rocker only swings; else 0.4 rad."""
 
 
+@cache
 def chain(inner, outer, way=np.exp(0.4j), **more):
     a, b, h, pivot, assembly = INNER[inner]
     b2, h2, d, word = OUTER[outer]
@@ -60,8 +65,7 @@ def complex_of(pair):
 
 
 @pytest.mark.slow
-@every("inner", INNER)
-@every("outer", OUTER)
+@every("inner, outer", PAIRS)
 def test_bars_keep_their_lengths_and_joints_run_on_without_kinks(inner, outer):
     """Over all turns: rates are those of central differences, through change points too."""
     made = chain(inner, outer)
@@ -83,8 +87,7 @@ def test_bars_keep_their_lengths_and_joints_run_on_without_kinks(inner, outer):
 
 
 @pytest.mark.slow
-@every("inner", INNER)
-@every("outer", OUTER)
+@every("inner, outer", PAIRS)
 def test_motion_repeats_after_its_turns(inner, outer):
     made, turn = chain(inner, outer), np.linspace(0.1, 6.0, 40)
     first, again = (solved(made, turn + angle).position("C") for angle in (0.0, 2 * np.pi * made.turns))
@@ -94,8 +97,7 @@ def test_motion_repeats_after_its_turns(inner, outer):
 
 
 @pytest.mark.slow
-@every("inner", INNER)
-@every("outer", OUTER)
+@every("inner, outer", PAIRS)
 def test_change_points_are_where_the_side_of_the_pin_changes(inner, outer):
     made = chain(inner, outer)
     turn = np.linspace(0.0, 2 * np.pi, 5000) + 0.05
@@ -108,7 +110,8 @@ def test_change_points_are_where_the_side_of_the_pin_changes(inner, outer):
         assert np.abs(np.exp(1j * found) - np.exp(1j * angle)).min() < 2e-3
 
 
-@every(("inner", "outer"), [("drag link", "far"), ("crank-rocker", "antiparallelogram"), ("rhombus", "deltoid")])
+@pytest.mark.slow
+@every("inner, outer", [("drag link", "far"), ("crank-rocker", "antiparallelogram"), ("rhombus", "deltoid")])
 def test_joints_do_not_jump_over_a_dense_turn(inner, outer):
     made = chain(inner, outer)
     s = solved(made, np.linspace(0.0, 2 * np.pi * made.turns, 4001), crank_speed=1.0)
@@ -161,15 +164,16 @@ def errors(made, angle):
     }
 
 
-@pytest.mark.parametrize("inner", INNER)
-@pytest.mark.parametrize("outer", ["parallelogram", "antiparallelogram", "deltoid", "far"])
+@pytest.mark.slow
+@every("inner, outer", PAIRS[::2])
 def test_forces_obey_newton(inner, outer):
     assert max(errors(chain(inner, outer), 1.234).values()) < 1e-11
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-@pytest.mark.parametrize("inner", ["crank-rocker", "drag link"])
-@pytest.mark.parametrize("outer", ["antiparallelogram", "near"])
+@every("inner", ["crank-rocker", "drag link"])
+@every("outer", ["antiparallelogram", "near"])
 def test_forces_on_the_other_bars_stay_right_beside_change_points(inner, outer):
     """Torque and forces of the inner bars lose no digit, those that grow the digits by which they do."""
     made = chain(inner, outer, UP)
@@ -201,6 +205,7 @@ def test_double_parallelogram_translates():
     assert made.change_points == (0.0, np.pi)
 
 
+@pytest.mark.slow
 def test_forces_grow_at_the_outer_bars_alone():
     made = chain("crank-rocker", "antiparallelogram")
     assert {name for name in ("O", "A", "B", "O2", "B2", "C", "O3", "ground") if made.grows(name)} == {
@@ -252,8 +257,7 @@ def test_programs_and_derivatives(engine):
 
 
 @pytest.mark.slow
-@every("inner", [name for name in INNER if "long" not in name])
-@every("outer", OUTER)
+@every("inner, outer", [pair for pair in PAIRS[::2] if "long" not in pair[0]])
 def test_independent_formulas_confirm_30_digits(flint, inner, outer):
     s = solved(chain(inner, outer, UP), np.array([0.3, 2.0, 7.9]))
     for quantity in ("balancing_torque", "A", "C"):

@@ -28,7 +28,7 @@ def solve(made, angles=ANGLES, **options):
     return ks.solve(made, angles, crank_speed=1.0, **options)
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
+@every("assembly", [1, -1])
 def test_motion_and_forces_satisfy_the_full_system(assembly):
     s = solve(watt(assembly), loads=[ks.Gravity()])
     for row in (0, 2, 5):
@@ -36,7 +36,7 @@ def test_motion_and_forces_satisfy_the_full_system(assembly):
         assert {what: error for what, error in errors.items() if not error < 1e-14} == {}, row
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
+@every("assembly", [1, -1])
 def test_pin_lies_on_the_chosen_side(assembly):
     s = solve(watt(assembly))
     first, second, pin = (planar(s.position(name)) for name in ("C", "E", "D"))
@@ -104,7 +104,7 @@ def test_dyad_near_its_limit_warns():
 
 
 @every(
-    ("fields", "words"),
+    "fields, words",
     [
         ({"length1": -0.1}, "length1 must be greater than 0"),
         ({"length2": 0.0}, "length2 must be greater than 0"),

@@ -10,7 +10,7 @@ from support.every import every
 from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
-@pytest.mark.parametrize("kind", [name for name in KINDS if "flat" not in name])
+@every("kind", [name for name in KINDS if "flat" not in name])
 def test_roller_path_bends_as_the_pitch_curve(kind):
     follower = KINDS[kind]()
     joint = scene(follower).solve(ANGLES).placement.joints["R"]
@@ -56,7 +56,7 @@ def test_what_is_no_law_is_refused(name, kind):
 # What followers on a guide share
 
 
-every_face = pytest.mark.parametrize("kind", [ks.RollerFollower, ks.FlatFollower])
+every_face = every("kind", [ks.RollerFollower, ks.FlatFollower])
 
 
 @every_face
@@ -133,11 +133,7 @@ def solved(law=LAW, offset=0.0, angles=ANGLES):
 def test_the_contact_is_as_far_aside_as_the_velocity():
     s = solved()
     assert_allclose(s.measure("contact_place"), -LAW(ANGLES).velocity, rtol=1e-15)
-    assert_allclose(
-        s.measure("curvature_radius"),
-        LAW(ANGLES).position + LAW(ANGLES).acceleration,
-        rtol=1e-15,
-    )
+    assert_allclose(s.measure("curvature_radius"), LAW(ANGLES).position + LAW(ANGLES).acceleration, rtol=1e-15)
 
 
 def test_guide_bears_the_contact_moment():
@@ -150,15 +146,14 @@ def test_guide_bears_the_contact_moment():
 
 def test_no_side_force_whatever_the_pressure():
     assert_allclose(
-        solved().scalar("contact_force"),
-        2.0 * 144.0 * LAW(ANGLES).acceleration + 5e3 * LAW(ANGLES).position,
+        solved().scalar("contact_force"), 2.0 * 144.0 * LAW(ANGLES).acceleration + 5e3 * LAW(ANGLES).position
     )
 
 
 # Swinging followers on a cam that turns
 
 
-both_sides = pytest.mark.parametrize("kind", ["swinging", "swinging, other side"])
+both_sides = every("kind", ["swinging", "swinging, other side"])
 
 
 @both_sides
@@ -205,7 +200,7 @@ def three_lobes(phi):
 
 
 @every(
-    ("follower", "words"),
+    "follower, words",
     [
         (
             ks.RollerFollower(ks.laws.cosine(0.02, 0.01)),
@@ -231,7 +226,7 @@ IMPOSSIBLE = {
 }
 
 
-@pytest.mark.parametrize("name", IMPOSSIBLE)
+@every("name", IMPOSSIBLE)
 def test_what_no_follower_can_have_is_refused(name):
     given, text = IMPOSSIBLE[name]
     with pytest.raises(ks.ParameterError, match=text):
@@ -242,7 +237,7 @@ def test_what_no_follower_can_have_is_refused(name):
 
 
 PSI = np.linspace(0.0, 6.2, 53)
-every_kind = pytest.mark.parametrize("kind", KINDS)
+every_kind = every("kind", KINDS)
 
 
 @every_kind
@@ -285,6 +280,7 @@ def test_flat_follower_curvature_is_s_and_s2():
     assert_allclose(follower.disk.curvature_radius(PSI), law.position + law.acceleration, rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_it_is_made_for_the_workshop(tmp_path):
     disk = KINDS["roller, offset"]().disk
     made = disk.profile(0.01, 90)
@@ -298,6 +294,7 @@ def test_it_is_made_for_the_workshop(tmp_path):
         disk.profile(0.2, 90)
 
 
+@pytest.mark.slow
 def test_a_flat_face_touches_the_pitch_curve_itself(tmp_path):
     """The face at s(phi) is a tangent of the cam: in axes of the crank n . surface reaches s, and nowhere more."""
     follower = ks.FlatFollower(LAW, ks.Guide.at(0.3))

@@ -34,6 +34,7 @@ from kinetostatics.solution.scene import Scene
 from kinetostatics.studies.methods.global_system import newton
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from kinetostatics.studies.methods.kane import equations
+from support.every import every
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +169,8 @@ def test_group_outputs_stand_in_frame_and_extremes():
     assert table.loc["slot force saw", "unit"] == "N"
 
 
-@pytest.mark.parametrize("engine", ["numpy", "compiled"])
+@pytest.mark.slow
+@every("engine", ["numpy", "compiled"])
 def test_engines_and_programs_agree_with_the_kernels(solution, engine):
     if engine == "compiled":
         pytest.importorskip("numba", reason="numba is not installed (extra: fast)")

@@ -151,7 +151,7 @@ def test_a_law_of_ones_own_is_told_how_to_shift_itself():
 
 
 @every(
-    ("law", "message"),
+    "law, message",
     [
         (laws.cosine(0.3, -2.0), "the slider must stay ahead of the roller along the guide, but is 2.02"),
         (

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 
 import kinetostatics as ks
 from kinetostatics.machine.laws.law import Law, breakpoints_of
+from support.every import every
 
 laws = ks.laws
 TURN = 2 * np.pi
@@ -45,7 +46,7 @@ def rise_dwell_return(name="cycloidal", **options):
     )
 
 
-@pytest.mark.parametrize("name", SMOOTH)
+@every("name", SMOOTH)
 def test_rise_dwell_return_runs_and_repeats(name):
     law = rise_dwell_return(name)
     assert_allclose(law([0.0, 1.0, 2.2, 3.75, 5.5]).position, [1.7, 2.0, 2.3, 2.0, 1.7], rtol=1e-15)
@@ -54,7 +55,7 @@ def test_rise_dwell_return_runs_and_repeats(name):
     assert law(1.0).velocity.shape == ()
 
 
-@pytest.mark.parametrize("name", SMOOTH)
+@every("name", SMOOTH)
 def test_motion_is_continuous_between_segments(name):
     law = rise_dwell_return(name)
     knots = np.unique(law.knots)
@@ -84,8 +85,8 @@ def test_smoothed_law_gives_better_forces():
     assert smooth.shifted(0.1).force_error == smooth.force_error < 0.01
 
 
-@pytest.mark.parametrize(
-    ("segments", "message"),
+@every(
+    "segments, message",
     [
         (
             [laws.cycloidal(1, 2, 3.0)],
@@ -169,7 +170,7 @@ def test_knots_mark_jumps_of_acceleration_or_jerk():
 CURVES = SEGMENTS | {"powers of one's own": lambda *args: laws.polynomial(*args, powers=[3, 5, 8])}
 
 
-@pytest.mark.parametrize("name", CURVES)
+@every("name", CURVES)
 def test_every_derivative_is_that_of_the_one_before(name):
     """By the interpolating polynomial between the knots, whose derivative is exact to rounding."""
     segment = CURVES[name](0.2, -0.3, 1.7)
@@ -182,7 +183,7 @@ def test_every_derivative_is_that_of_the_one_before(name):
             )
 
 
-@pytest.mark.parametrize("name", CURVES)
+@every("name", CURVES)
 def test_peaks_scale_with_stroke_and_angle(name):
     """Velocity by stroke / angle, acceleration by stroke / angle^2, jerk by stroke / angle^3."""
     segment = CURVES[name](2.0, 1.5, 0.8)
@@ -246,7 +247,7 @@ def integrated(name, u):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", RISES)
+@every("name", RISES)
 def test_rise_integrates_its_textbook_acceleration(name):
     rise = RISES[name]
     with mp.workdps(25):
@@ -254,12 +255,12 @@ def test_rise_integrates_its_textbook_acceleration(name):
     assert_allclose(rise(np.array(PLACES))[:3], expected, rtol=0, atol=1e-13)
 
 
-@pytest.mark.parametrize("name", RISES)
+@every("name", RISES)
 def test_peaks_are_the_published_ones(name):
     assert_allclose(RISES[name].coefficients, PUBLISHED[name], rtol=2e-5)
 
 
-@pytest.mark.parametrize("name", RISES)
+@every("name", RISES)
 def test_the_end_of_a_rise_is_as_exact_as_its_start(name):
     """Velocity and acceleration vanish at both ends, and close to the end nothing of its rest is lost."""
     rise = RISES[name]
@@ -269,8 +270,8 @@ def test_the_end_of_a_rise_is_as_exact_as_its_start(name):
     assert start[0][0] == 0.0
 
 
-@pytest.mark.parametrize(
-    ("name", "breaks"),
+@every(
+    "name, breaks",
     [
         ("harmonic", (0.0, 1.0)),
         ("cycloidal", (0.0, 0.25, 0.75, 1.0)),
@@ -283,7 +284,7 @@ def test_pieces_meet_where_the_textbooks_say(name, breaks):
     assert RISES[name].breaks == breaks
 
 
-@pytest.mark.parametrize("name", RISES)
+@every("name", RISES)
 def test_what_is_no_number_has_no_position(name):
     assert np.isnan(RISES[name](np.array([np.nan, np.nan]))).all()
     assert np.isnan(RISES[name](np.array([0.3, np.nan])).position).tolist() == [False, True]

@@ -97,7 +97,7 @@ def test_slot_lies_left_of_the_pivot():
     assert np.max(np.abs(across - 0.04)) < 1e-16
 
 
-@pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-6])
+@every("gap", [1e-2, 1e-4, 1e-6])
 def test_lever_near_its_pivot_keeps_its_condition(gap):
     """Crank as long as the pivot's distance but for a gap: the lever turns over within a small angle."""
     pivot, angles = (0.0, -R * (1.0 + gap)), -np.pi / 2 + np.array([-2.0, -0.5, 0.0, 0.3, 1.0]) * gap
@@ -153,7 +153,7 @@ def test_pin_meeting_the_pivot_warns():
 
 
 @every(
-    ("kind", "fields", "words"),
+    "kind, fields, words",
     [
         (ks.LeverGroup, {"pivot": 0.2}, "lever pivot must be a pair"),
         (ks.LeverGroup, {"pivot": (0.2, np.nan)}, "lever pivot y must be finite"),
@@ -236,7 +236,7 @@ def test_requirement_tells_the_distances():
     assert words.endswith("must be greater than zero")
 
 
-@pytest.mark.parametrize("margin", [1e-3, 1e-6, 1e-9])
+@every("margin", [1e-3, 1e-6, 1e-9])
 def test_pin_clearing_the_pivot_keeps_its_digits(flint, margin):
     reach = 0.3125
     group = ks.CylinderGroup((reach, 0.0), rod=ROD, cylinder=CYLINDER)

@@ -19,7 +19,7 @@ def two_sliders(*labels):
 ANGLES_OF_SLIDERS = np.linspace(0.1, 6.0, 5)
 
 
-@pytest.mark.parametrize(("labels", "meant"), [(("2",), "slider2"), (("", "2"), "slider"), (("2", ""), "slider")])
+@every("labels, meant", [(("2",), "slider2"), (("", "2"), "slider"), (("2", ""), "slider")])
 def test_single_or_unlabelled_slider_needs_no_name(labels, meant):
     s = two_sliders(*labels)
     assert np.array_equal(s.slider_position, s.travel(meant))
@@ -91,7 +91,7 @@ MADE = {
 }
 
 
-@pytest.mark.parametrize("name", MADE)
+@every("name", MADE)
 def test_a_mechanism_of_everyday_is_crank_and_group(name):
     made, crank, group = MADE[name]
     found, expected = (
@@ -169,8 +169,8 @@ def test_angles_in_radians_are_not(angles):
         solve(angle=angles, on_gap="nan")
 
 
-@pytest.mark.parametrize(
-    ("changes", "words"),
+@every(
+    "changes, words",
     [
         ({"coupler": ks.Link(2.0, 200.0)}, r"coupler.centre.along is 200 m, 500 times the longest link .*mm\?"),
         ({"slider": ks.Link(2.0, (0.0, 9.0))}, "slider.centre.across is 9 m"),

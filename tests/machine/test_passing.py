@@ -11,12 +11,13 @@ from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from kinetostatics.studies.methods.high_precision.certified import enclosure, relative_errors
 from support.change_points import BALANCE, LEVER_LINKS, SIDES, SPEED, each_lever, lever, read, solve
+from support.every import every
 
-meeting = pytest.mark.parametrize("assembly", SIDES)
+meeting = every("assembly", SIDES)
 
 
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
-@pytest.mark.parametrize("ulps", [-6, 6])
+@every("ulps", [-6, 6])
 def test_nearly_equal_lengths_count_as_equal(ulps):
     """Pivots on the crank circle by decimals: the lever's rate is one half to the last bit."""
     for angle in np.radians([0.0, 20.0, 90.0, 160.0, 180.0, 200.0, 270.0, 340.0]):
@@ -55,7 +56,7 @@ def test_motion_passes_the_change_point_and_closes(name, assembly):
 # Sides
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.03])
+@every("offset", [0.0, 0.03])
 def test_other_side_turns_the_slot_away(offset):
     """With masses turned likewise, and without an offset, all forces are the same."""
     angles = np.linspace(0.0, 6.0, 13)
@@ -78,8 +79,8 @@ def test_other_side_turns_the_slot_away(offset):
         np.testing.assert_allclose(first.scalar("slot_force"), -second.scalar("slot_force"), rtol=1e-13)
 
 
-@pytest.mark.parametrize("assembly", [1, -1, "open", "crossed"])
-@pytest.mark.parametrize("offset", [0.0, 0.05])
+@every("assembly", [1, -1, "open", "crossed"])
+@every("offset", [0.0, 0.05])
 def test_groups_of_every_assembly_balance(assembly, offset):
     links = {name: LEVER_LINKS[name] for name in ("lever", "block")}
     assert ks.check(ks.LeverGroup((0.1, -0.3), offset=offset, assembly=assembly, **links)).ok
@@ -131,8 +132,8 @@ def test_program_keeps_a_zero_slot_offset():
         kept(0.3, {"slot_offset": 1e-3})
 
 
-@pytest.mark.parametrize("excess", [1e-2, 1e-5, 1e-8])
-@pytest.mark.parametrize("pivot", [(0.5, 0.49), (-0.5, 0.49), (0.7, 0.0)])
+@every("excess", [1e-2, 1e-5, 1e-8])
+@every("pivot", [(0.5, 0.49), (-0.5, 0.49), (0.7, 0.0)])
 def test_inclined_branch_keeps_its_digits(flint, pivot, excess):
     crank, ground = 0.2, math.hypot(*pivot)
     coupler = ground * (1.0 - excess)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 import kinetostatics as ks
 from kinetostatics.errors import ParameterError
 from support.chains import error_beside_constraints
-from support.every import quick
+from support.every import every, quick
 from support.machines import planar
 from support.strategies import reproducible
 
@@ -85,7 +85,7 @@ def test_any_link_bears_what_hangs_on_a_pin(link):
     assert s.power_residual < 1e-13
 
 
-@pytest.mark.parametrize("link", ["crank", "block"])
+@every("link", ["crank", "block"])
 def test_slotted_crank_bears_what_hangs_on_a_pin(link):
     s = solve(
         ks.CamRoller(ks.cams.Circle(0.3, (0.05, -0.03)), PISTON),
@@ -122,8 +122,8 @@ def test_articulated_rod_meets_the_guide(offset, radius, length):
 BARS = ks.RockerGroup(0.4, 0.3, (0.3, 0.1))
 
 
-@pytest.mark.parametrize(
-    ("first", "second", "words"),
+@every(
+    "first, second, words",
     [
         (BARS, ks.Pin("couplr", (0.1, 0.0)), "link that carries joint 'C' is 'couplr', allowed: .*'crank', 'coupler'"),
         (ks.Pin("coupler", (0.1, 0.0)), BARS, "a part that adds a link must come before the parts fixed to it"),
@@ -139,8 +139,8 @@ def test_names_that_do_not_fit_are_refused(first, second, words):
         ks.Mechanism("chain", ks.Crank(0.1), (first, second))
 
 
-@pytest.mark.parametrize(
-    ("fields", "words"),
+@every(
+    "fields, words",
     [
         ({"at": (np.nan, 0.0)}, "at along must be finite"),
         ({"at": 0.1}, "at must be a pair"),

@@ -96,9 +96,10 @@ def newton_euler(made, line, speed, acceleration, gravity, push, pressure_angle)
     return np.array(found).T
 
 
+@pytest.mark.slow
 @every("speed", [60.0, -60.0])
 @every("radius", [ARM, 0.5 * ARM])
-@every(("line", "push", "acceleration"), [(0.0, 0.0, 0.0), (0.4, -300.0, 40.0), (2.5, 200.0, -500.0)])
+@every("line, push, acceleration", [(0.0, 0.0, 0.0), (0.4, -300.0, 40.0), (2.5, 200.0, -500.0)])
 def test_forces_are_those_of_all_bodies_equations(speed, radius, line, push, acceleration):
     made, pressure = drive(radius, line, pressure_angle=0.4), 0.4
     loads = [ks.Gravity(), ks.ProcessForce(push)]
@@ -166,8 +167,8 @@ def test_compiled_values_and_derivatives_agree():
             assert exact[name][path] == pytest.approx(slope, rel=1e-6, abs=1e-6 * np.abs(slope).max() + 1e-6)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
+@every(
+    "options, words",
     [
         ({"radius": 0.0}, "radius must be greater than 0"),
         ({"radius": np.nan}, "radius"),

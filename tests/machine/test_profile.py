@@ -14,7 +14,7 @@ import kinetostatics as ks
 from kinetostatics.machine.cams import roller
 from kinetostatics.numbers.files import read_columns
 from support.cam_contacts import CAM, LOADS, STEEL, rolled
-from support.every import quick
+from support.every import every, quick
 
 TURN = 2 * np.pi
 ANGLES = np.linspace(0.0, TURN, 97)
@@ -25,7 +25,7 @@ LAW = ks.cams.CosineLaw(0.3, 2.0, 0.3)
 CAMS = {"law": LAW, "lobes": LOBES, "from a law": ks.cams.from_law(ks.laws.cosine(0.3, 2.0))}
 
 
-@pytest.mark.parametrize(("side", "radius"), [("disk", 0.17), ("ring", 0.23)])
+@every("side, radius", [("disk", 0.17), ("ring", 0.23)])
 def test_the_working_curve_of_a_circle_is_a_circle(side, radius):
     made = ks.cams.Circle(0.2, (0.03, -0.02)).profile(0.03, ANGLES, side)
     assert_allclose(np.hypot(made.surface[0] - 0.03, made.surface[1] + 0.02), radius, rtol=1e-14)
@@ -33,7 +33,7 @@ def test_the_working_curve_of_a_circle_is_a_circle(side, radius):
     assert_allclose(np.hypot(*made.normal), 1.0, rtol=1e-15)
 
 
-@pytest.mark.parametrize("name", CAMS)
+@every("name", CAMS)
 def test_angle_and_curvature_equal_those_of_points(name):
     """By derivatives of the points x(phi), y(phi) with complex numbers, not by the formulas of polar curves."""
     cam = CAMS[name]
@@ -69,8 +69,9 @@ def test_curvature_of_the_cosine_law_against_40_digits():
             assert found == pytest.approx(float(abs(first) ** 3 / mp.im(mp.conj(first) * second)), rel=1e-10)
 
 
-@pytest.mark.parametrize("side", ["disk", "ring"])
-@pytest.mark.parametrize("name", CAMS)
+@pytest.mark.slow
+@every("side", ["disk", "ring"])
+@every("name", CAMS)
 def test_the_roller_touches_the_cam_and_never_cuts_it(name, side):
     """The nearest point of a fine pitch curve is a roller's radius from each surface point, none is nearer."""
     cam = CAMS[name]
@@ -79,7 +80,8 @@ def test_the_roller_touches_the_cam_and_never_cuts_it(name, side):
     assert_allclose(distance, 0.02, rtol=0, atol=1e-8)
 
 
-@pytest.mark.parametrize("side", ["disk", "ring"])
+@pytest.mark.slow
+@every("side", ["disk", "ring"])
 def test_other_cutter_cuts_the_same_curve(side):
     """It touches the surface where the roller does, its centre a cutter's radius away from it."""
     made = LOBES.profile(0.02, 400, side)
@@ -91,6 +93,7 @@ def test_other_cutter_cuts_the_same_curve(side):
     assert_allclose(made.cutter_path(0.02), made.pitch, rtol=0, atol=1e-16)
 
 
+@pytest.mark.slow
 def test_extremes_lie_between_the_samples():
     """Of an eccentric circle: its largest pressure angle is asin(e / a), at right angles to the centre."""
     cam = ks.cams.Circle(0.2, (0.03, 0.0))
@@ -163,8 +166,9 @@ def test_limits_name_what_exceeds_them():
     assert second.endswith("less than 0.05")
 
 
-@pytest.mark.parametrize("name", CAMS)
-@pytest.mark.parametrize("degrees", [3.0, 20.0, 35.0])
+@pytest.mark.slow
+@every("name", CAMS)
+@every("degrees", [3.0, 20.0, 35.0])
 def test_base_circle_gives_the_largest_angle(name, degrees):
     """The cam of the same rise on that base circle, sampled anew, has that pressure angle as its largest."""
     cam = CAMS[name]
@@ -182,7 +186,7 @@ UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("units", UNITS)
+@every("units", UNITS)
 def test_a_dxf_read_back_gives_the_same_points(tmp_path, units):
     ezdxf = pytest.importorskip("ezdxf")
     CUT_CAM.export(tmp_path / "cam.dxf", units=units, **GIVEN)
@@ -255,7 +259,7 @@ def svg_of(cam, folder, **options):
     return ET.parse(folder / "cam.svg").getroot(), {"svg": "http://www.w3.org/2000/svg"}
 
 
-@pytest.mark.parametrize("side", ["disk", "ring"])
+@every("side", ["disk", "ring"])
 def test_drawing_is_one_to_one(tmp_path, side):
     root, space = svg_of(CUT_CAM, tmp_path, side=side)
     left, top, width, height = map(float, root.get("viewBox").split())
@@ -366,10 +370,7 @@ def test_roller_conforms_to_a_ring_not_a_disk():
     assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    "rise",
-    quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1),
-)
+@pytest.mark.parametrize("rise", quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1))
 def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
     """Against 200 000 points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""
     height, width = 1e-7, np.radians(0.1)
@@ -389,6 +390,7 @@ def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
         ks.RollerFollower(law).disk.profile(0.03, 8)
 
 
+@pytest.mark.slow
 def test_a_smooth_bump_between_the_samples_is_seen():
     """The jerk of a 4-5-6-7 polynomial starts and ends with 0, so nothing jumps where its segments join."""
     width, height = np.radians(0.06), 1e-6

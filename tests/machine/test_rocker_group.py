@@ -9,16 +9,8 @@ from numpy.testing import assert_array_equal
 
 import kinetostatics as ks
 from support import multibody
-from support.machines import (
-    ANGLES,
-    FourBar,
-    assert_equal,
-    bar_results,
-    largest,
-    motions,
-    planar,
-    turning,
-)
+from support.every import every
+from support.machines import ANGLES, FourBar, assert_equal, bar_results, largest, motions, planar, turning
 from support.multibody import Body
 from support.strategies import dimension
 
@@ -26,9 +18,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 """Bodies drawn at random have any inertia."""
 
 EPSILON = 2.0**-53
-
-
-# Random four-bars
 
 
 # Laws
@@ -50,7 +39,7 @@ def scaled(bar, length, mass):
     )
 
 
-@pytest.mark.parametrize("power", [-200, -100, -12, 12, 100, 200])
+@every("power", [-200, -100, -12, 12, 100, 200])
 def test_no_absolute_number_hides_in_the_rocker_group(power):
     """Scaling by powers of two, from 1e-60 to 1e60 m, is exact in binary arithmetic, so every bit must agree."""
     length, mass = 2.0**power, 2.0**-15
@@ -59,8 +48,8 @@ def test_no_absolute_number_hides_in_the_rocker_group(power):
         assert_array_equal(values, mass * length ** dimension(name) * expected[name], err_msg=name)
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
-@pytest.mark.parametrize("turn", [0.7, np.pi / 2, -2.9])
+@every("assembly", [1, -1])
+@every("turn", [0.7, np.pi / 2, -2.9])
 def test_turning_everything_turns_vectors_only(turn, assembly):
     """Pivot, gravity and the zero of the crank angle together."""
     around = np.exp(1j * turn)
@@ -74,7 +63,7 @@ def test_turning_everything_turns_vectors_only(turn, assembly):
     assert_equal(motions(after), {name: around * values for name, values in motions(before).items()})
 
 
-@pytest.mark.parametrize("radius", [1e2, 1e4, 1e6])
+@every("radius", [1e2, 1e4, 1e6])
 def test_long_rocker_makes_a_crank_slider(radius):
     """Its pin runs on an arc that leaves the straight guide as 1 / radius; here the guide is +x through O."""
     link = ks.Link(2.0, (0.3, 0.1), 0.5)
@@ -135,8 +124,9 @@ def assert_error_is_that_of_rounded_lengths(bar, angles):
         assert bar.assembly * turning(bar.pivot - A, B - A) > 0
 
 
-@pytest.mark.parametrize("kind", ["stretched", "folded", "folded, long coupler"])
-@pytest.mark.parametrize(("power", "assembly"), [(2, 1), (10, 1), (14, -1)])
+@pytest.mark.slow
+@every("kind", ["stretched", "folded", "folded, long coupler"])
+@every("power, assembly", [(2, 1), (10, 1), (14, -1)])
 def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
     """A closing margin of 1e-14 leaves a sine of the transmission angle of 1e-7.
 
@@ -148,7 +138,8 @@ def test_error_near_a_toggle_is_of_rounded_lengths(kind, power, assembly):
     assert_error_is_that_of_rounded_lengths(replace(bar, assembly=assembly), angles)
 
 
-@pytest.mark.parametrize(("longer", "assembly"), [(1e2, 1), (1e4, -1), (1e6, 1)])
+@pytest.mark.slow
+@every("longer, assembly", [(1e2, 1), (1e4, -1), (1e6, 1)])
 def test_error_with_a_long_link_is_of_rounded_lengths(longer, assembly):
     """Differences of squares would cost twice as many digits as the long link has more than the short one."""
     for coupler, rocker in ((1.0, longer), (longer, 1.0)):

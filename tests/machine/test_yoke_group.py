@@ -13,7 +13,7 @@ TURN = np.linspace(0.05, 2 * np.pi, 25)
 CRANK, L, E = 0.1, 0.4, 0.03
 
 
-@pytest.mark.parametrize("assembly", [1, -1])
+@every("assembly", [1, -1])
 def test_position_and_velocity_are_the_closed_form(assembly):
     s = ks.solve(ks.crank_slider(CRANK, L, guide_offset=E, assembly=assembly), TURN, crank_speed=3.0)
     root = np.sqrt(L**2 - (E - CRANK * np.sin(TURN)) ** 2)
@@ -58,7 +58,7 @@ def test_yoke_shaking_force_is_one_harmonic():
 
 
 @every("slot", [0.01, 1.2, 2.0, 3.1, -1.0, 4.0])
-@every(("tilt", "offset"), [(0.0, 0.0), (0.4, 0.03), (np.pi / 2, -0.02), (2.5, 0.0)])
+@every("tilt, offset", [(0.0, 0.0), (0.4, 0.03), (np.pi / 2, -0.02), (2.5, 0.0)])
 def test_motion_is_of_intersecting_lines(slot, tilt, offset):
     made = ks.scotch_yoke(R, guide_angle=tilt, guide_offset=offset, slot_angle=slot, slider=ks.Link(1.0))
     s = ks.solve(made, ANGLES, crank_speed=SPEED, crank_acceleration=3.0)
@@ -86,7 +86,7 @@ def test_a_spring_that_is_nearly_free_keeps_its_digits():
     assert np.max(np.abs(s.elongation(free) - expected)) < 2 * EPSILON
 
 
-@pytest.mark.parametrize("slot", [0.0, np.pi, -np.pi, 2 * np.pi, 1e-12])
+@every("slot", [0.0, np.pi, -np.pi, 2 * np.pi, 1e-12])
 def test_a_slot_parallel_to_the_guide_is_refused(slot):
     with pytest.raises(ParameterError, match="parallel to the guide; it must differ from 0 and pi"):
         ks.YokeGroup(slot_angle=slot)
@@ -100,9 +100,7 @@ def test_program_refuses_a_parallel_slot():
         program(0.3, {"slot_angle": np.pi})
 
 
-@pytest.mark.parametrize(
-    ("field", "value"), [("slot_angle", np.nan), ("slot_angle", None), ("guide", 0.3), ("block", 1.0)]
-)
+@every("field, value", [("slot_angle", np.nan), ("slot_angle", None), ("guide", 0.3), ("block", 1.0)])
 def test_what_no_yoke_can_have_is_refused(field, value):
     with pytest.raises(ParameterError, match=f"yoke group: {field}"):
         ks.YokeGroup(**{field: value})

@@ -8,6 +8,7 @@ import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics.dynamics import Dynamics
 from support.cam_contacts import CAM, LOADS, STEEL, contact, rolled, solved
+from support.every import every
 from support.machines import ANGLES
 
 COMPLIANCE = 2.0 * (1.0 - 0.3**2) / 210e9
@@ -55,7 +56,7 @@ FOLLOWERS = [
 ]
 
 
-@pytest.mark.parametrize(("follower", "load"), FOLLOWERS)
+@every("follower, load", FOLLOWERS)
 def test_followers_press_by_roller_and_disk_radii(follower, load):
     scene = ks.Scene(ks.Mechanism("cam drive", ks.Crank(None), (follower,)), 20.0, loads=[load])
     found = scene.solve(90)
@@ -186,8 +187,8 @@ def cam():
     return ks.Scene(mechanism, 33.0, -5.0, (ks.Gravity(), ks.Spring(6e5, 2.0)))
 
 
-@pytest.mark.parametrize("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
-@pytest.mark.parametrize("engine", ["numpy", "kernels"])
+@every("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
+@every("engine", ["numpy", "kernels"])
 def test_reduced_inertia_makes_up_the_torque(scene, engine):
     s = scene.solve(AROUND)
     s = s.dynamics if engine == "kernels" else s
@@ -196,7 +197,7 @@ def test_reduced_inertia_makes_up_the_torque(scene, engine):
     assert np.abs(whole - s.balancing_torque).max() < 1e-13 * s.largest_torque_term
 
 
-@pytest.mark.parametrize("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
+@every("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
 def test_energies_are_integrals_of_torque_and_slope(scene):
     nodes, weights = np.polynomial.legendre.leggauss(40)
     start, end = 0.3, 1.9
@@ -232,7 +233,7 @@ def test_machine_without_mass_has_no_energy():
         assert np.array_equal(getattr(s, name), np.zeros(AROUND.size)), name
 
 
-@pytest.mark.parametrize("speed", [7.0, -7.0])
+@every("speed", [7.0, -7.0])
 def test_energy_per_turn_is_what_the_loads_take(speed):
     mechanism = ks.crank_slider(0.3, 1.1, slider=ks.Link(11.0), **LINKS)
     cut = ks.Table([0.7, 1.0, 1.5], [0.0, -200.0, -400.0], over="travel", back=[0.0, 50.0, 0.0])

@@ -32,7 +32,7 @@ def imbalance(solution):
 @every("case", shipped_cases())
 def test_forces_on_every_link_of_shipped_machines_are_in_equilibrium(case):
     for variant in variant_names(case):
-        assert imbalance(shipped(case).solve(variant).at(ANGLES)) < CLOSED
+        assert imbalance(shipped(case).variant(variant).scene.solve(ANGLES)) < CLOSED
 
 
 @every("name", SCENES)
@@ -55,6 +55,7 @@ def test_friction_is_in_equilibrium(kind):
     assert imbalance(scene.solve(solution.crank_angle[closed])) < CLOSED
 
 
+@pytest.mark.slow
 @every("seed", range(5))
 def test_forces_on_every_link_of_random_chains_are_in_equilibrium(seed):
     scene, angles = chains.chain(seed)

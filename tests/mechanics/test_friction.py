@@ -2,7 +2,6 @@
 
 import itertools
 import warnings
-from types import SimpleNamespace
 
 import mpmath as mp
 import numpy as np
@@ -10,14 +9,6 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.mechanics import jamming
-from kinetostatics.mechanics.friction import (
-    Channel,
-    FrictionEquations,
-    FrictionLaw,
-    direction_of,
-    kink_functions,
-    size_of,
-)
 from support.every import every, quick
 from support.friction_machines import FOLLOWERS, JOINTS, KINDS, RUBBED, Drawn, differences
 from support.pulsed_scenes import PulsedScene
@@ -33,7 +24,7 @@ def rubbed(friction=JOINTS, **drive):
     return ks.solve(RUBBED, TURN, friction=friction, **DRIVE | drive)
 
 
-@pytest.mark.parametrize("kind", [*quick(KINDS, 5), *FOLLOWERS])
+@pytest.mark.parametrize("kind", quick([*KINDS, *FOLLOWERS], 3))
 def test_forces_obey_newton_for_all_bodies(kind):
     difference, solution = differences(kind, 1)
     assert difference < 1e-13
@@ -42,7 +33,7 @@ def test_forces_obey_newton_for_all_bodies(kind):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", [*KINDS, *FOLLOWERS])
+@every("kind", [*KINDS, *FOLLOWERS])
 def test_four_times_the_friction_obeys_newton_too(kind):
     assert differences(kind, 100, 4.0)[0] < 1e-13
 
@@ -52,15 +43,16 @@ def _from_rest(drawn):
     drawn.system.speed = mp.mpf(0)
 
 
-@pytest.mark.parametrize("kind", ["slider", "cam", "lever"])
+@pytest.mark.slow
+@every("kind", ["slider", "cam", "lever"])
 def test_friction_from_rest_opposes_the_coming_motion(kind):
     difference, solution = differences(kind, 3, changed=_from_rest)
     assert difference < 1e-13
     assert solution.friction_loss == 0.0
 
 
-@pytest.mark.parametrize("way", [1.0, -1.0])
-@pytest.mark.parametrize(("angle", "side"), [(0.0, 1.0), (np.pi, -1.0)])
+@every("way", [1.0, -1.0])
+@every("angle, side", [(0.0, 1.0), (np.pi, -1.0)])
 def test_static_torque_at_dead_centres_is_closed_form(angle, side, way):
     a, b, o, load, ratio = 0.02, 0.015, 0.01, 1000.0, 1.0 / 3.0
     friction = {name: ks.PinFriction(1.0, rho) for name, rho in {"O": o, "A": a, "B": b}.items()}
@@ -72,7 +64,7 @@ def test_static_torque_at_dead_centres_is_closed_form(angle, side, way):
     assert s.balancing_torque == pytest.approx(way * torque, rel=1e-13)
 
 
-@pytest.mark.parametrize("speed", [12.0, -12.0])
+@every("speed", [12.0, -12.0])
 def test_a_guide_alone_has_its_closed_form(speed):
     drive = {"crank_speed": speed, "loads": ks.Gravity()}
     free = ks.solve(STEEP, TURN, **drive)
@@ -153,7 +145,7 @@ def test_jamming_guide_is_refused_with_angles():
     assert np.array_equal(s.converged, ~jams)
 
 
-@pytest.mark.parametrize(("half_length", "jams"), [(0.0201, False), (0.0199, True)])
+@every("half_length, jams", [(0.0201, False), (0.0199, True)])
 def test_yoke_jams_with_a_short_shoe(half_length, jams):
     yoke, angle = ks.scotch_yoke(0.1, slider=ks.Link(3.0)), np.array([np.pi / 2])
     friction = {"guide": ks.GuideFriction(0.2, half_length)}
@@ -161,7 +153,7 @@ def test_yoke_jams_with_a_short_shoe(half_length, jams):
     assert (s.friction_margin[0] <= 0.0) == jams
 
 
-@pytest.mark.parametrize("factor", [0.999, 1.001])
+@every("factor", [0.999, 1.001])
 def test_centric_guide_jams_at_the_known_coefficient(factor):
     friction = {"guide": ks.GuideFriction(factor * np.sqrt((0.13 / 0.1) ** 2 - 1.0))}
     s = ks.solve(STEEP, np.array([np.pi / 2]), crank_speed=1.0, friction=friction, on_gap="nan")
@@ -203,6 +195,7 @@ def test_enclosures_hold_what_is_computed():
             assert np.abs(exact - own).max() < 1e-14 * found.largest
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_of_differences():
     program = ks.compile(SCENE, ("balancing_torque", "friction_loss"), engine="numpy")
     found = program.derivatives(TURN)
@@ -248,6 +241,7 @@ def test_extremes_stand_on_both_sides_of_a_jump():
     assert np.isclose(s.sampled.kinks, np.pi, atol=1e-12).any()
 
 
+@pytest.mark.slow
 def test_the_mean_torque_is_right_across_the_jumps():
     from kinetostatics.cycle.comparison import mean_absolute_torque
 
@@ -325,7 +319,7 @@ def parallelogram(angles, assembly):
     return ks.solve(four_bar, angles, crank_speed=10.0, loads=ks.Gravity(), friction=LEGS)
 
 
-@pytest.mark.parametrize(("angle", "assembly"), [(0.7, "open"), (2.2, "crossed")])
+@every("angle, assembly", [(0.7, "open"), (2.2, "crossed")])
 def test_friction_follows_the_side_of_a_change_point(angle, assembly):
     """The same posture by its sign, off the change points: an assembly that keeps to one side passes none."""
     passing, *sides = (parallelogram([angle], side) for side in (assembly, 1, -1))
@@ -346,92 +340,13 @@ def test_jamming_at_change_points_is_reported():
         between.efficiency  # noqa: B018
 
 
-# Friction of one pair, and the equations of all friction of a part
-
-PASSES = 6
-PARTS = [(3.0, -4.0), (-3.0, None), (None, 2.0), (-1.0, 0.5), (2.0, 2.5)]
-SIZES = {"length": np.hypot, "larger": lambda a, b: max(abs(a), abs(b))}
-
-
-@every("parts", PARTS)
-@every("kind", SIZES)
-def test_factor_times_direction_times_parts(kind, parts):
-    law = FrictionLaw("B", 0.3, None, kind, ())
-    size = SIZES[kind](*(0.0 if part is None else part for part in parts))
-    assert size_of(kind, parts) == pytest.approx(size, rel=1e-15)
-    along = zip(direction_of(law, parts), parts, strict=True)
-    assert sum(one * other for one, other in along if other is not None) == pytest.approx(0.3 * size, rel=1e-15)
-
-
-def test_a_number_has_its_size_or_is_itself():
-    assert size_of("size", (-2.0,)) == 2.0
-    assert size_of("itself", (-2.0,)) == -2.0
-    assert direction_of(FrictionLaw("B", 0.3, None, "itself", ()), (-2.0,)) == (0.3,)
-    assert direction_of(FrictionLaw("B", 0.3, None, "size", ()), (-2.0,)) == (-0.3,)
-    assert size_of("length", (None, None)) is None
-
-
-def test_kinks_lie_where_a_size_or_the_larger_changes():
-    assert kink_functions("size", (-2.0,)) == [-2.0]
-    assert kink_functions("length", (3.0, 4.0)) == []
-    assert kink_functions("larger", (3.0, -4.0)) == [3.0, -4.0, -1.0]
-
-
-def equations(factors, free, columns, kinds=None):
-    """Laws whose reactions are ``free + columns amounts``, each with a channel of its own, one way."""
-    names = [f"channel {number}" for number in range(len(factors))]
-    kinds = kinds or ["size"] * len(factors)
-
-    def reaction(place):
-        return lambda found: (found.values[place],)
-
-    laws = [
-        FrictionLaw(name, factor, reaction(place), kind, ((Channel(name), 1),))
-        for place, (name, factor, kind) in enumerate(zip(names, factors, kinds, strict=True))
-    ]
-    of = [SimpleNamespace(values=values) for values in (free, *np.transpose(columns).tolist())]
-    return FrictionEquations(laws, names, of[0], of[1:])
-
-
-@pytest.mark.parametrize(("load", "kappa"), [(3.0, 0.4), (-3.0, 0.4), (3.0, -0.4), (-3.0, -0.4)])
-def test_one_force_is_its_closed_form(load, kappa):
-    """N = N0 + kappa mu |N|."""
-    made = equations([0.5], [load], [[kappa]])
-    (amount,) = made.solve(PASSES, 0.0)
-    normal = load / (1.0 - 0.5 * kappa * np.sign(load))
-    assert amount == pytest.approx(0.5 * abs(normal), rel=1e-15)
-    assert made.margin == pytest.approx(0.8)
-    assert made.residual < 1e-15
-
-
-def test_coupled_friction_forces_satisfy_their_laws():
-    columns, free, factors = np.array([[0.2, -0.5], [0.7, 0.1]]), np.array([4.0, -7.0]), np.array([0.3, 0.2])
-    found = np.array(equations(factors.tolist(), free.tolist(), columns).solve(PASSES, 0.0))
-    np.testing.assert_allclose(found, factors * np.abs(free + columns @ found), rtol=1e-15)
-
-
-@pytest.mark.parametrize(("kappa", "jams"), [(0.99, False), (1.01, True)])
-def test_it_jams_where_feedback_reaches_one(kappa, jams):
-    made = equations([1.0], [3.0], [[kappa]])
-    with np.errstate(invalid="ignore"):
-        (amount,) = made.solve(PASSES, 0.0)
-    assert (made.margin < 0.0) == jams
-    assert np.isnan(amount) == jams
-
-
-def test_without_feedback_friction_is_found_at_once():
-    made = equations([0.5, 0.25], [3.0, -2.0], [[None, None], [None, None]])
-    assert made.margin is None
-    assert made.solve(PASSES, 0.0) == [1.5, 0.5]
-
-
 # Where friction jams
 
 PUMP = ks.crank_slider(0.1, 0.2, slider=ks.Link(2.0))
 AROUND = np.linspace(0.1, 2 * np.pi, 30)
 
 
-@pytest.mark.parametrize(("speed", "acceleration", "stands"), [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
+@every("speed, acceleration, stands", [(0.0, 0.0, True), (0.0, 1.0, False), (2.0, 0.0, False)])
 def test_a_crank_at_rest_has_no_friction_direction(speed, acceleration, stands):
     s = ks.solve(PUMP, AROUND, crank_speed=speed, crank_acceleration=acceleration)
     assert bool(jamming.problem_at_rest(s)) == stands
@@ -441,8 +356,8 @@ def test_friction_converges_to_the_last_digit():
     assert jamming.converged(np.array([1.0, 1.0, -1.0]), np.array([1e-14, 1e-9, 0.0])).tolist() == [True, False, False]
 
 
-@pytest.mark.parametrize(
-    ("margin", "residuals", "passes"),
+@every(
+    "margin, residuals, passes",
     [
         (0.5, (1e-16,), (3,)),
         (0.5, (1e-4, 1e-9, 1e-16), (3, 6, 12)),

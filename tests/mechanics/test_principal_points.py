@@ -11,6 +11,7 @@ import kinetostatics as ks
 from kinetostatics.mechanics.principal_points import principal_points
 from kinetostatics.numbers.planar import moment
 from support.chains import chain
+from support.every import every
 from support.machines import largest, planar
 from support.strategies import either_sign, number, reproducible
 from support.turning_machines import random_machine
@@ -22,7 +23,7 @@ CLOSE = 1e-13
 """Relative to the largest part of a sum."""
 KINDS = ("crank slider", "circle cam", "cosine cam", "four-bar", "six-bar")
 TURN = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
-each_kind = pytest.mark.parametrize("kind", KINDS)
+each_kind = every("kind", KINDS)
 
 
 def loaded(kind):

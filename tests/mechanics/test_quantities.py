@@ -9,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.cycle.extremes import extremes_frame
 from kinetostatics.mechanics.quantities import of_mechanism
 from kinetostatics.studies.simplifications import ingredients, two_mass_coupler
+from support.every import every
 
 TURN = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
@@ -40,7 +41,7 @@ def v_engine(second=0.5):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("label", ["2", "_saw", "_rate", "_position", "_torque"])
+@every("label", ["2", "_saw", "_rate", "_position", "_torque"])
 def test_six_bar_guide_outputs_have_their_units(label):
     solution = ks.solve(chain(label), TURN, crank_speed=20.0, loads=ks.Gravity())
     assert {f"guide_force{label} [N]", f"guide_moment{label} [N m]"} <= set(solution.frame().columns)
@@ -80,7 +81,7 @@ def test_needs_simplifies_links_of_a_kind_together():
     assert bare.mechanism.links["slider2"].mass == 0
 
 
-@pytest.mark.parametrize(("on", "pin"), [("O", "C"), ("B", "C")])
+@every("on, pin", [("O", "C"), ("B", "C")])
 def test_two_masses_keep_the_forces_of_a_coupler(on, pin):
     """On the frame, as a rod from O, and on the pin of a slider; the inertia of two masses is m s (l - s)."""
     rod = ks.Link(4.0, 0.3, 4.0 * 0.3 * (0.9 - 0.3))

@@ -63,8 +63,9 @@ def test_arm_changes_the_torque_of_the_saw():
 # Every engine
 
 
-@pytest.mark.parametrize("engine", ["numpy", pytest.param("compiled", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("follower", [False, True])
+@pytest.mark.parametrize(
+    ("engine", "follower"), [("numpy", False), ("numpy", True), pytest.param("compiled", False, marks=pytest.mark.slow)]
+)
 def test_programs_and_derivatives(engine, follower):
     scene, contact = rolling_follower() if follower else (ROLLING, "cam")
     path = f"friction.{contact}.rolling_arm"
@@ -138,7 +139,7 @@ def test_case_file_has_the_arm(tmp_path):
 
 
 @every(
-    ("arm", "words"),
+    "arm, words",
     [
         ("-1 mm", "must be at least 0 m"),
         ("nan mm", "rolling_arm"),

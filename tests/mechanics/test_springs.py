@@ -81,7 +81,7 @@ def loaded(machine, given, acceleration=0.0):
 
 
 @pytest.mark.slow
-@every("name, given, acceleration", [(n, g, a) for n in MACHINES for g in SPRINGS for a in (0.0, -50.0)])
+@every("name, given, acceleration", [(n, g, -50.0 * (k % 2)) for k, n in enumerate(MACHINES) for g in SPRINGS])
 def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration):
     run = loaded(MACHINES[name], given, acceleration).dynamics
     apart = run.mechanism.resolve(run.placement, run.link_loads, run.pushes)
@@ -114,6 +114,7 @@ def test_without_springs_or_mass_nothing_is_done():
         assert all(taken is given for taken, given in zip(run.acting, (run.link_loads, run.pushes), strict=True))
 
 
+@pytest.mark.slow
 @every("name, guide", [(name, INCLINED) for name in CAMS])
 def test_one_force_takes_hardly_more_operations(name, guide):
     """Two products and two sums more at each crank angle."""
@@ -152,6 +153,7 @@ class Softened(ks.Spring):
 STIFF, PRELOAD = ks.Spring(4e5, 2.1), ks.ProcessForce(1000.0)
 
 
+@pytest.mark.slow
 @every("machine, own, plain", [
     ("crank", [Preloaded(2e5, 1.9)], [ks.Spring(2e5, 1.9), PRELOAD]),
     ("crank", [Preloaded(2e5, 1.9), STIFF], [ks.Spring(2e5, 1.9), PRELOAD, STIFF]),
@@ -178,6 +180,7 @@ def test_a_balancing_spring_leaves_the_exact_force(name, flint):
     assert np.max(np.abs(errors)) < 1.7e-16 * spring
 
 
+@pytest.mark.slow
 @every("guide", [LEVEL, INCLINED])
 def test_a_stiffening_spring_leaves_the_exact_force(guide, flint):
     """Within 4e-16 of the spring's force; by a rate that changes with the crank angle it were 7e-16."""

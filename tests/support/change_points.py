@@ -5,9 +5,9 @@ from itertools import product
 
 import mpmath as mp
 import numpy as np
-import pytest
 
 import kinetostatics as ks
+from support.every import every
 
 from . import multibody
 from .machines import FourBar
@@ -39,9 +39,7 @@ LEVERS = {
 }
 """Distance of the pivot and offset of the slot, for a crank of 1 m."""
 SIDES = {"open": 1, "crossed": -1}
-each, each_lever = (
-    pytest.mark.parametrize(("name", "assembly"), list(product(names, SIDES))) for names in (LINKAGES, LEVERS)
-)
+each, each_lever = (every("name, assembly", list(product(names, SIDES))) for names in (LINKAGES, LEVERS))
 SPEED, ACCELERATION, WEIGHT = 2.0, 1.5, 9.81
 DIGITS = 80
 """Of the reference, whose equations lose half of them 1e-17 rad from a change point."""

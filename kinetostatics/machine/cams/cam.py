@@ -7,7 +7,7 @@ With r(phi) the radius of the pitch curve, the pressure angle is atan(r' / r), a
 from dataclasses import dataclass
 from functools import reduce
 from operator import add
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -208,17 +208,12 @@ class Harmonic(checks.Checked, Cam):
     [0.32, 0.01, -0.02]
     """
 
-    cosine: Any
-    sine: Any = ()
-    guide_angle: Any = 0.0
+    cosine: Annotated[Any, checks.Series("m", letter="a", first=checks.Number("m", low=0.0, strict=True))]
+    sine: Annotated[Any, checks.Series("m", letter="b", start=1)] = ()
+    guide_angle: Annotated[Any, checks.Number("rad")] = 0.0
 
     ELEMENTWISE = True
-    RULES = checks.Rules(
-        "harmonic cam",
-        cosine=checks.Series("m", letter="a", first=checks.Number("m", low=0.0, strict=True)),
-        sine=checks.Series("m", letter="b", start=1),
-        guide_angle=checks.Number("rad"),
-    )
+    RULES = checks.Rules("harmonic cam")
 
     @property
     def lengths(self):

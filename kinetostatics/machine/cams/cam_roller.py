@@ -7,7 +7,7 @@ acts across the ray. Equilibrium of the block gives both forces. The crank bears
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -17,12 +17,12 @@ from ...numbers.parameter_tree import come_from_one_class
 from ...numbers.planar import cross, dot, minus, polar_curvature, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..dimensions import Radius, within
-from ..group import FRAME, LINK, PLANE, Declaration, Group, Output, Point, Resolved
+from ..group import FRAME, Declaration, Group, GroupLink, Output, Plane, Point, Resolved
 from ..kinematic_state import Course, Orbit
 from ..laws.law import turn_angles
 from ..links import CamDriven, Joint, Link, LinkMotion, Rolling, Slide, Sliding, Slot, Wrench
 from .cam import RADIUS_ANGLES
-from .roller import LineContact, Roller, relative_radius
+from .roller import LineContact, OptionalRoller, relative_radius
 
 CURVES = {"A": "pitch curve of the cam"}
 TERMS = {
@@ -35,7 +35,6 @@ TERMS = {
     "resolve.lean": ("tau", "tangent of the pressure angle"),
     "resolve.outward": ("N", "force on the block along the ray"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 def place(ray, radius, slope, curvature):
@@ -101,20 +100,14 @@ class CamRoller(checks.Checked, Group):
     205131 N
     """
 
-    cam: Any
-    block: Link = Link()
-    roller: Roller | None = None
-    plane: Any = None
+    cam: Annotated[Any, checks.HasMembers(("polar",), "one of ks.cams or similar")]
+    block: GroupLink = Link()
+    roller: OptionalRoller = None
+    plane: Plane = None
 
     TRUSTED = True
     PATHS: ClassVar = {"plane": "block_plane"}
-    RULES = checks.Rules(
-        "cam roller",
-        cam=checks.HasMembers(("polar",), "one of ks.cams or similar"),
-        block=LINK,
-        roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
-        plane=PLANE,
-    )
+    RULES = checks.Rules("cam roller")
 
     LINKS: ClassVar = {"block": "joint"}
     joint = "A"

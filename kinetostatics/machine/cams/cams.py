@@ -5,7 +5,7 @@ splines are smooth and keep their digits all round the turn.
 """
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
@@ -30,11 +30,10 @@ TERMS = {
     "excess": ("d", "that root less the coordinate of the slider"),
     "share": ("f", "amplitude times the cosine of the singular angle"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 @dataclass(frozen=True, eq=False, init=False)
-class Circle(Cam):
+class Circle(checks.Checked, Cam):
     """Circular pitch curve around O.
 
     Where O lies close to the circle, other formulas keep all digits. A batch uses them if O is close in any design, so
@@ -61,8 +60,8 @@ class Circle(Cam):
     (0.2781, 0.0731)
     """
 
-    pitch_radius: Any
-    centre: Any
+    pitch_radius: Annotated[Any, checks.Number("m", "radius", low=0.0, strict=True)]
+    centre: Annotated[Any, checks.Pair("m")]
     is_close: bool = field(default=False, init=False, repr=False)
 
     ELEMENTWISE = True
@@ -89,12 +88,7 @@ class Circle(Cam):
                 outside,
             )
 
-    RULES = checks.Rules(
-        "circle cam",
-        _outside_problems,
-        pitch_radius=checks.Number("m", "radius", low=0.0, strict=True),
-        centre=checks.Pair("m"),
-    )
+    RULES = checks.Rules("circle cam", _outside_problems)
 
     @property
     def lengths(self):
@@ -125,11 +119,7 @@ class Circle(Cam):
         return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
 
     def _polar_near_circle(self, along, across, ray):
-        """The same with O close to the circle, without differences of nearly equal lengths.
-
-        All follow from the smallest radius and positive terms; r (root - along) is the product of the smallest and
-        largest radius.
-        """
+        """The same with O close to the circle, by the smallest radius and positive terms, without cancellation."""
         (x, y), radius = self.centre, self.pitch_radius
         (away, rest), (direction, reach) = length_with_error(self.centre), direction_and_length((y, -x))
         least, share = compensated_sum(radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)
@@ -186,9 +176,9 @@ class CosineLaw(checks.Checked, Cam):
     2.162090692
     """
 
-    amplitude: Any
-    mean: Any
-    guide_angle: Any = 0.0
+    amplitude: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    mean: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    guide_angle: Annotated[Any, checks.Number("rad")] = 0.0
 
     ELEMENTWISE = True
 
@@ -199,13 +189,7 @@ class CosineLaw(checks.Checked, Cam):
             got = f"got mean {mean} m and amplitude {amplitude} m"
             yield checks.Problem(f"mean must exceed the amplitude, or the slider would run over O; {got}", over)
 
-    RULES = checks.Rules(
-        "cosine-law cam",
-        _origin_problems,
-        amplitude=checks.Number("m", low=0.0, strict=True),
-        mean=checks.Number("m", low=0.0, strict=True),
-        guide_angle=checks.Number("rad"),
-    )
+    RULES = checks.Rules("cosine-law cam", _origin_problems)
 
     @cached_property
     def _cosine(self):

@@ -8,7 +8,7 @@ nu1^2)/E1 + (1 - nu2^2)/E2 and 1/Re the sum of both curvatures,
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -34,11 +34,7 @@ def half_width(force, width, modulus, radius):
 
 
 def relative_radius(bend, roller_radius, side):
-    """Relative radius Re of a roller on its cam, m, from the curvature kappa of the pitch curve, 1/m.
-
-    The working curve is offset from the pitch curve by the radius R of the roller. So Re = R (1 - kappa R) on a disk,
-    side -1, and R (1 + kappa R) on a ring, side +1.
-    """
+    """Relative radius Re = R (1 + side kappa R) of a roller on a disk (side -1) or a ring (+1), m."""
     return roller_radius * (1.0 + side * bend * roller_radius)
 
 
@@ -47,12 +43,6 @@ MODULUS_RULE = checks.Number(
     "Pa", low=0.0, strict=True, usual=checks.PlausibleRange(1e13, "is it in GPa, or in N/mm2?", least=1e6)
 )
 POISSON_RULE = checks.Number("1", low=0.0)
-MATERIAL_RULES = {
-    "youngs_modulus": MODULUS_RULE,
-    "poissons_ratio": POISSON_RULE,
-    "cam_youngs_modulus": checks.Optional(MODULUS_RULE),
-    "cam_poissons_ratio": checks.Optional(POISSON_RULE),
-}
 MAX_POISSONS_RATIO = 0.5
 
 
@@ -66,11 +56,11 @@ class LineContact(NamedTuple):
 class PressedBody(checks.Checked):
     """Base of `Roller` and `Face`: width of the contact, and materials of the body and the cam."""
 
-    width: Any
-    youngs_modulus: Any
-    poissons_ratio: Any
-    cam_youngs_modulus: Any
-    cam_poissons_ratio: Any
+    width: Annotated[Any, SIZE_RULE]
+    youngs_modulus: Annotated[Any, MODULUS_RULE]
+    poissons_ratio: Annotated[Any, POISSON_RULE]
+    cam_youngs_modulus: Annotated[Any, checks.Optional(MODULUS_RULE)]
+    cam_poissons_ratio: Annotated[Any, checks.Optional(POISSON_RULE)]
 
     def _poisson_problems(self):
         """Problem of designs with a Poisson's ratio above 0.5: the volume would grow under pressure."""
@@ -119,14 +109,18 @@ class Roller(PressedBody):
     249.0 MPa
     """
 
-    radius: Any
+    radius: Annotated[Any, SIZE_RULE]
     width: Any
     youngs_modulus: Any
     poissons_ratio: Any
     cam_youngs_modulus: Any = None
     cam_poissons_ratio: Any = None
 
-    RULES = checks.Rules("roller", PressedBody._poisson_problems, radius=SIZE_RULE, width=SIZE_RULE, **MATERIAL_RULES)
+    RULES = checks.Rules("roller", PressedBody._poisson_problems)
+
+
+OptionalRoller = Annotated[Roller | None, checks.Optional(checks.InstanceOf(Roller, "a Roller"))]
+"""Type of a field for a roller, with its rule."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,4 +153,4 @@ class Face(PressedBody):
     cam_youngs_modulus: Any = None
     cam_poissons_ratio: Any = None
 
-    RULES = checks.Rules("face", PressedBody._poisson_problems, width=SIZE_RULE, **MATERIAL_RULES)
+    RULES = checks.Rules("face", PressedBody._poisson_problems)

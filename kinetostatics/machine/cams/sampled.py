@@ -64,7 +64,7 @@ class Sampled(TurnTable, Cam):
         return f"<Sampled cam {way} {self.angle.size} points, forces within {self.force_error:.2g} of the largest>"
 
     @classmethod
-    def from_csv(cls, path, noise=None):
+    def from_csv(cls, path, noise=None) -> "Sampled":
         """Read a table with two columns headed like ``angle [deg], radius [mm]``; any unit of angle and length.
 
         Parameters
@@ -73,10 +73,6 @@ class Sampled(TurnTable, Cam):
             Comments at the top of the file begin with ``#``.
         noise : float, optional
             As for the cam itself, m.
-
-        Returns
-        -------
-        Sampled
 
         Raises
         ------

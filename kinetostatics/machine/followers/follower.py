@@ -7,7 +7,7 @@ angle of a polar angle.
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ..cams.cam import Cam
 from ..cams.roller import LineContact, relative_radius
 from ..crank import ray as ray_at
 from ..dimensions import Radius
-from ..group import PLANE, Group, Output
+from ..group import Group, Label, Name, Output, Plane
 from ..laws.law import TURN, Breakpoint, breakpoints_of, law_problem, turn_angles
 from ..links import CamDriven, Rolling
 
@@ -32,10 +32,7 @@ OUTLINE_POINTS = 181
 
 @dataclass(frozen=True, eq=False)
 class DiskCam(Cam):
-    """Cam of a follower with ``pitch(law values) -> P, P', P''``; made by its `disk`.
-
-    It turns with the crank. Its polar angles count from +x at crank angle 0; `Cam` calls them crank angles.
-    """
+    """Cam of a follower, made by its `disk`; its polar angles count from +x at crank angle 0."""
 
     follower: Any
 
@@ -167,15 +164,13 @@ class LawRule:
         return (value, f"{field}: {problem}") if problem else (FollowerLaw(value), None)
 
 
-RULES = {"cam": LawRule(), "pin": checks.Name(), "label": checks.Name(may_be_empty=True), "plane": PLANE}
-
-
 class Follower(checks.Checked, Group):
     """Follower of one link, `moved`, by a law of the crank angle."""
 
-    cam: Any
-    pin: str
-    label: str
+    cam: Annotated[Any, LawRule()]
+    pin: Name
+    label: Label
+    plane: Plane
     roller: Any
 
     hangs_on = ("O",)
@@ -240,10 +235,7 @@ class Follower(checks.Checked, Group):
 
 
 def path_curvature(joint):
-    """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside.
-
-    In this view the joint moves around the cam clockwise.
-    """
+    """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside."""
     place, first, second = joint
     along = subtract_vectors(first, left(place))
     return -curvature(along, subtract_vectors(subtract_vectors(second, scale_vector(2.0, left(first))), place))

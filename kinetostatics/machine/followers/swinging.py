@@ -11,35 +11,24 @@ M, the moment of all loads on the arm about it, the crank feels -M dtheta/dphi f
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, cos, sin
-from ...numbers.planar import (
-    add_vectors,
-    cross,
-    dot,
-    left,
-    length,
-    number_or_zero,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-)
-from ..cams.roller import Roller
+from ...numbers.planar import cross, dot, left, length, number_or_zero, rotate, scale_vector, subtract_vectors
+from ..cams.roller import OptionalRoller
 from ..dimensions import Span, of_fixed_point
-from ..group import FRAME, LINK, Bar, Declaration, Output, Point, Resolved
+from ..group import FRAME, Bar, Declaration, GroupLink, Name, Output, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, link_between
-from . import follower
+from .follower import Follower
 
 TERMS = {
     "distance": ("a", "from O to the pivot"),
     "inward": ("n", "unit vector from the pivot to O"),
     "reach": ("h", "from the pivot to the roller centre"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class SwingingMotion(NamedTuple):
@@ -61,7 +50,7 @@ def place(swing, pivot, arm_length, side):
     reach = scale_vector(arm_length, direction)
     aside = left(reach)
     roller = Joint(
-        add_vectors(pivot, reach),
+        (pivot[0] + reach[0], pivot[1] + reach[1]),
         scale_vector(ratio, aside),
         subtract_vectors(scale_vector(slope, aside), scale_vector(ratio * ratio, reach)),
     )
@@ -74,10 +63,7 @@ def _met(arm, roller, lever):
 
 
 def resolve(motion, arm_length, load):
-    """Force of the cam on the roller, of the ground on the arm, and wrench of the crank on the arm (kernel).
-
-    `load` is the wrench of all others about the pivot.
-    """
+    """Forces of cam and ground and wrench of the crank for a `load` about the pivot (kernel)."""
     couple = number_or_zero(load.moment)
     force = couple / (arm_length * motion.lever)
     pressed = scale_vector(force, motion.across)
@@ -87,7 +73,7 @@ def resolve(motion, arm_length, load):
 
 
 @dataclass(frozen=True, eq=False)
-class SwingingFollower(follower.Follower):
+class SwingingFollower(Follower):
     """Arm about the fixed joint `pivot_name` whose roller runs on a cam fixed to the crank, by a law.
 
     Parameters
@@ -141,14 +127,14 @@ class SwingingFollower(follower.Follower):
     """
 
     cam: Any
-    arm_length: Any
-    pivot: Any
-    assembly: int = 1
-    arm: Link = Link()
+    arm_length: Annotated[Any, checks.Number("m", "arm length", low=0.0, strict=True)]
+    pivot: Annotated[Any, checks.Pair("m", "follower pivot")]
+    assembly: Annotated[int, checks.Sign()] = 1
+    arm: GroupLink = Link()
     pin: str = "R"
-    pivot_name: str = "Q"
+    pivot_name: Name = "Q"
     label: str = ""
-    roller: Roller | None = None
+    roller: OptionalRoller = None
     plane: Any = None
 
     def _pivot_apart(self):
@@ -161,17 +147,7 @@ class SwingingFollower(follower.Follower):
     TRUSTED = True
     LAW = ("beta", "rad")
     PATHS: ClassVar = {"pivot": "follower_pivot", "plane": "arm_plane"}
-    RULES = checks.Rules(
-        "swinging follower",
-        _pivot_apart,
-        **follower.RULES,
-        arm_length=checks.Number("m", "arm length", low=0.0, strict=True),
-        pivot=checks.Pair("m", "follower pivot"),
-        assembly=checks.Sign(),
-        arm=LINK,
-        pivot_name=checks.Name(),
-        roller=checks.Optional(checks.InstanceOf(Roller, "a Roller")),
-    )
+    RULES = checks.Rules("swinging follower", _pivot_apart)
 
     @property
     def declaration(self):

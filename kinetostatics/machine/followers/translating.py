@@ -14,32 +14,24 @@ stay positive (Norton, *Cam Design and Manufacturing Handbook*, 2009, chapter 7)
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import atan, clamped_sqrt, sqrt
-from ...numbers.planar import dot, minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
-from ..cams.roller import Face, Roller
+from ...numbers.planar import minus, number_or_zero, plus, rotate, rotate_back, vector_or_zero
+from ..cams.roller import Face, OptionalRoller
 from ..dimensions import within
-from ..group import EMPTY, FRAME, LINK, Declaration, Output, Point, Resolved
-from ..guide import Guide, slider_motion
-from ..links import Joint, Link, LinkMotion, Slide, Sliding, Wrench
-from .follower import RULES, Follower
+from ..group import EMPTY, FRAME, Declaration, GroupLink, Output, Point, Resolved
+from ..guide import Guide, SliderGuide, known_slider, slider_motion
+from ..links import Joint, Link, Slide, Sliding, Wrench
+from .follower import Follower
 
 TERMS = {
     "pushed": ("N", "force of the cam along the guide"),
     "lean": ("tau", "tangent of the pressure angle"),
     "lever": ("b", "from the pin to the contact, to the right"),
-}
-"""Symbols and meanings of kernel lines in hand calculations."""
-
-
-GUIDED_RULES = {
-    **RULES,
-    "guide": checks.InstanceOf(Guide, "made by Guide.at or .through"),
-    "follower": LINK,
 }
 
 
@@ -48,8 +40,8 @@ class GuidedFollower(Follower):
     """Follower on a guide, moved by a cam on the crank; its kinds give ``forces(travel, guide, load, push)``."""
 
     cam: Any
-    guide: Guide = Guide()
-    follower: Link = Link()
+    guide: SliderGuide = Guide()
+    follower: GroupLink = Link()
     pin: str = "R"
     label: str = ""
 
@@ -86,9 +78,7 @@ class GuidedFollower(Follower):
 
     def follow(self, placement, joints):
         """Place the follower at its known pin."""
-        pin, direction = joints[self.pin], self.guide.direction
-        travel = Joint(*(dot(direction, vector_or_zero(part)) for part in pin))
-        self._enter(placement, LinkMotion(pin, direction, None, None), travel)
+        self._enter(placement, *known_slider(joints[self.pin], self.guide.direction))
 
     def _enter(self, placement, follower, travel):
         self.enter(placement, travel, {self.pin: follower.joint}, {"follower": follower}, {"follower": travel})
@@ -101,10 +91,7 @@ class GuidedFollower(Follower):
 
 
 def roller_forces(travel, guide, load, push):
-    """Forces of cam and ground on the follower, moment of the ground, and wrench of the crank (kernel).
-
-    `push` is the applied force along the guide, `load` all else that acts on the follower, a wrench about P.
-    """
+    """Forces of cam and ground, moment of the ground, wrench of the crank; `push`: force along the guide (kernel)."""
     along, aside = rotate_back(vector_or_zero(load.force), guide.direction)
     pushed = -plus(along, push)
     lean = plus(guide.offset, travel.first) / travel.position
@@ -167,13 +154,11 @@ class RollerFollower(GuidedFollower):
     -11.309932
     """
 
-    roller: Roller | None = None
+    roller: OptionalRoller = None
     plane: Any = None
 
     TRUSTED = True
-    RULES = checks.Rules(
-        "roller follower", **GUIDED_RULES, roller=checks.Optional(checks.InstanceOf(Roller, "a Roller"))
-    )
+    RULES = checks.Rules("roller follower")
     MOTIONS: ClassVar = {
         "pressure_angle": Output(
             "rad", False, "of the contact force from the guide, positive with growing crank angle"
@@ -269,11 +254,11 @@ class FlatFollower(GuidedFollower):
     (0.01, 250.0)
     """
 
-    face: Face | None = None
+    face: Annotated[Face | None, checks.Optional(checks.InstanceOf(Face, "a Face"))] = None
     plane: Any = None
 
     TRUSTED = True
-    RULES = checks.Rules("flat follower", **GUIDED_RULES, face=checks.Optional(checks.InstanceOf(Face, "a Face")))
+    RULES = checks.Rules("flat follower")
     MOTIONS: ClassVar = {
         "contact_place": Output("m", False, "of the contact, from O along the guide's left normal"),
         "curvature_radius": Output("m", False, "of the cam at the contact, positive where convex"),

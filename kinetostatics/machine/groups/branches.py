@@ -35,10 +35,7 @@ def equality(*lengths):
 
 @dataclass(frozen=True, eq=False)
 class Branch:
-    """Branch of a group with the fields `assembly` and `on`.
-
-    The crank angle is halved from the direction `start`, by default the direction of the pivot.
-    """
+    """Branch of a group with the fields `assembly` and `on`; the crank angle is halved from the direction `start`."""
 
     passage: str = field(default="", init=False, repr=False)
     is_close: bool = field(default=False, init=False, repr=False)
@@ -101,15 +98,7 @@ class Branch:
         checks.require(self.RULES.owner, problem)
 
     def passage_on(self: Any, throw, centre=(0.0, 0.0)):
-        """Kind of the change points on a pin that turns about a place, and quadrant of `start` from it; "" without any.
-
-        Lengths are compared in extended precision.
-
-        Raises
-        ------
-        ParameterError
-            It is not on a crank pin, a length is unknown, or designs are of several kinds.
-        """
+        """Kind of the change points on a pin that turns about a place, and quadrant of `start` from it; or ""."""
         if throw is None and self.IS_ON_ROCKERS:
             return self.passage  # `beside` finds it
         if throw is None:

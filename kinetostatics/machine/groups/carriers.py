@@ -28,13 +28,7 @@ AWAY = 0.0123
 
 
 def on_rocker(group, groups, throws):
-    """A group of a chain with its passage through change points on the pin of a rocker.
-
-    Raises
-    ------
-    ParameterError
-        The pin belongs to no rocker, or the rocker does not repeat its motion after a turn of the crank.
-    """
+    """A group of a chain with its passage through change points on the pin of a rocker."""
     placement = Crank(throws["A"].at[0] if "A" in throws else None).place(ANGLES)
     links: dict[str, str] = {}
     with np.errstate(all="ignore"), suppress(KeyError):  # of joints that no part places

@@ -12,7 +12,7 @@ reference point for the couple of the pair.
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..dimensions import Span, of_fixed_point
-from ..group import FRAME, Declaration, Group, Output, Point, Resolved, rules_of_parts, separation
+from ..group import FRAME, Declaration, Group, GroupLink, Label, Name, Output, Plane, Point, Resolved, separation
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning, present
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
@@ -52,7 +52,6 @@ TERMS = {
     "resolve.moment": ("K", "moment of both links about the pivot"),
     "resolve.on_block": ("Q", "force of the slot on the block"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class LeverMotion(NamedTuple):
@@ -70,10 +69,7 @@ class LeverMotion(NamedTuple):
 
 
 def place(joint, pivot, offset, assembly):
-    """Direction of the lever for a given joint, its ratio and slope, then the last fields of `LeverMotion` (kernel).
-
-    An offset of None is zero.
-    """
+    """Direction of the lever for a joint, its ratio and slope, then the last fields of `LeverMotion` (kernel)."""
     d = (offset_from_zero(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
     square = dot(d, d)
     distance = sqrt(square)
@@ -96,11 +92,7 @@ def place(joint, pivot, offset, assembly):
 
 
 def resolve(motion, lever_load, block_load):
-    """Forces on the block at its joint and on the lever at its pivot, and of the slot on the block (kernel).
-
-    Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of both links
-    together about the pivot give the force across the slot.
-    """
+    """Forces on block and lever at joint and pivot, and of the slot, by moments about the pivot (kernel)."""
     moment, across = number_or_zero(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
     if motion.divisor[1] is None:
         (slot,) = divide((moment,), motion.divisor)
@@ -233,28 +225,22 @@ class LeverGroup(RPRGroup):
     True
     """
 
-    pivot: Any
-    on: str = "A"
-    offset: Any = 0.0
-    lever: Link = Link()
-    block: Link = Link()
-    pivot_name: str = "O2"
-    label: str = ""
-    assembly: int = 1
-    plane: Any = None
+    pivot: Annotated[Any, checks.Pair("m", "lever pivot")]
+    on: Name = "A"
+    offset: Annotated[Any, checks.Number("m", "slot offset")] = 0.0
+    lever: GroupLink = Link()
+    block: GroupLink = Link()
+    pivot_name: Name = "O2"
+    label: Label = ""
+    assembly: Annotated[int, checks.Sign(tuple(change_points.SIDES))] = 1
+    plane: Plane = None
     LINKS: ClassVar = {"lever": "pivot_name", "block": "on"}
     LEVER, BLOCK, PAIR = "lever", "block", "slot"
     TRUSTED = True
     PATHS: ClassVar = {"pivot": "lever_pivot", "offset": "slot_offset", "plane": "lever_plane"}
     KINDS: ClassVar = {"": "none", MEETING: "a = d and o = 0", NEAR: "o = d - a", OPPOSITE: "o = a - d"}
     """Crank a, distance d from O to the pivot, offset o of the slot."""
-    RULES = checks.Rules(
-        "lever group",
-        pivot=checks.Pair("m", "lever pivot"),
-        offset=checks.Number("m", "slot offset"),
-        assembly=checks.Sign(tuple(change_points.SIDES)),
-        **rules_of_parts(("lever", "block"), "on", "pivot_name"),
-    )
+    RULES = checks.Rules("lever group")
 
     @property
     def motions(self):
@@ -320,24 +306,20 @@ class CylinderGroup(RPRGroup):
     0.412311
     """
 
-    pivot: Any
-    on: str = "A"
-    rod: Link = Link()
-    cylinder: Link = Link()
-    pivot_name: str = "O2"
-    label: str = ""
-    plane: Any = None
+    pivot: Annotated[Any, checks.Pair("m", "cylinder pivot")]
+    on: Name = "A"
+    rod: GroupLink = Link()
+    cylinder: GroupLink = Link()
+    pivot_name: Name = "O2"
+    label: Label = ""
+    plane: Plane = None
 
     LINKS: ClassVar = {"rod": "on", "cylinder": "pivot_name"}
     LEVER, BLOCK, PAIR = "cylinder", "rod", "cylinder"
     TRUSTED = is_rod = True
     PATHS: ClassVar = {"pivot": "cylinder_pivot", "plane": "rod_plane"}
     assembly: ClassVar = 1
-    RULES = checks.Rules(
-        "cylinder group",
-        pivot=checks.Pair("m", "cylinder pivot"),
-        **rules_of_parts(("rod", "cylinder"), "on", "pivot_name"),
-    )
+    RULES = checks.Rules("cylinder group")
 
     @property
     def motions(self):

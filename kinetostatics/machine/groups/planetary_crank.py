@@ -12,31 +12,22 @@ no work.
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import cos, sin
-from ...numbers.planar import (
-    left,
-    number_or_zero,
-    rotate,
-    rotate_back,
-    scale_vector,
-    subtract_vectors,
-    vector_or_zero,
-)
+from ...numbers.planar import left, number_or_zero, rotate, rotate_back, scale_vector, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..dimensions import Angle, Span
-from ..group import Declaration, Group, Point, Resolved, rules_of_parts
+from ..group import Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
 from ..links import Joint, Link, LinkMotion, Meshing, Turning
 
 TERMS = {
     "tangential": ("T", "tangential tooth force of the ring on the planet"),
     "separating": ("S", "tooth force that presses the planet off the ring"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class PlanetMotion(NamedTuple):
@@ -57,11 +48,7 @@ def place(joint, length, radius, line):
 
 
 def resolve(motion, load, pressure_angle):
-    """Reactions of arm and ring on the planet, and the tangential tooth force (kernel).
-
-    `load` is the wrench of all other loads about the planet's axis; its moment gives the tangential force. Either flank
-    presses the planet off the ring.
-    """
+    """Reactions of arm and ring, and the tangential tooth force, for a `load` about the planet's axis (kernel)."""
     arm, length = motion.arm, motion.length
     radial = (arm[0] / length, arm[1] / length)
     tangential = -number_or_zero(load.moment) / length
@@ -121,14 +108,14 @@ class PlanetaryCrank(checks.Checked, Group):
     0.019
     """
 
-    radius: Any
-    line_angle: Any = 0.0
-    pressure_angle: Any = math.radians(20.0)
-    on: str = "A"
-    pin: str = "P"
-    planet: Link = Link()
-    label: str = ""
-    plane: Any = None
+    radius: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    line_angle: Annotated[Any, checks.Number("rad")] = 0.0
+    pressure_angle: Annotated[Any, checks.Number("rad", low=0.0)] = math.radians(20.0)
+    on: Name = "A"
+    pin: Name = "P"
+    planet: GroupLink = Link()
+    label: Label = ""
+    plane: Plane = None
 
     def _steep_teeth_problem(self):
         """Yield the problem of designs whose teeth would push along the arm."""
@@ -141,14 +128,7 @@ class PlanetaryCrank(checks.Checked, Group):
     LINKS: ClassVar = {"planet": "on"}
     TRUSTED = True
     PATHS: ClassVar = {"radius": "planet_radius", "plane": "planet_plane"}
-    RULES = checks.Rules(
-        "planetary crank",
-        _steep_teeth_problem,
-        radius=checks.Number("m", low=0.0, strict=True),
-        line_angle=checks.Number("rad"),
-        pressure_angle=checks.Number("rad", low=0.0),
-        **rules_of_parts(("planet",), "on", "pin"),
-    )
+    RULES = checks.Rules("planetary crank", _steep_teeth_problem)
 
     @property
     def declaration(self):

@@ -11,7 +11,7 @@ Seen from its second joint a dyad is a rocker group whose pivot stands still.
 """
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from ...numbers.planar import (
     work,
 )
 from ..dimensions import Span, of_fixed_point
-from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts, separation
+from ..group import FRAME, Bar, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved, separation
 from ..kinematic_state import Course, Swing
 from ..links import Joint, Link, LinkMotion, Turning, Wrench, joint_at, link_between
 from . import carriers, change_points, near_dead_centre
@@ -57,7 +57,6 @@ TERMS = {
     "along_coupler": ("U", "force of the pin on the second link along the first"),
     "along_rocker": ("V", "force of the pin on the second link along itself"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class RockerMotion(NamedTuple):
@@ -110,18 +109,8 @@ def motion_of(joint, rocker_length, pivot, coupler, rocker, *last):
     return RockerMotion(LinkMotion(joint, *coupler), rocker, joint_at(rocker, rocker_length), *last)
 
 
-def motion_between(start, end, pin, coupler_length, rocker_length):
-    """Motion of two links from their ends to a pin at known joints."""
-    coupler, rocker = link_between(start, pin, coupler_length), link_between(end, pin, rocker_length)
-    return RockerMotion(coupler, rocker, pin, (cross(coupler.direction, rocker.direction), None), None)
-
-
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
-    """Forces on the coupler at its inner joint, on the rocker at its pin and at its pivot (kernel).
-
-    Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of the coupler
-    about A and of the rocker about O2 give the pin force by its parts along both links.
-    """
+    """Forces at inner joint, pin and pivot, by moments of the coupler about A and of the rocker about O2 (kernel)."""
     q, p = motion.coupler.direction, motion.rocker.direction
     by_rocker = number_or_zero(rocker_load.moment) / rocker_length
     by_coupler = number_or_zero(coupler_load.moment) / coupler_length
@@ -177,12 +166,13 @@ class RRRGroup(checks.Checked, Group):
 
     def follow(self, placement, joints):
         """Place both links at known joints."""
-        first, second = self.bars
         for name, point in self.joints.items():
             if point.link == FRAME:
                 placement.joints[name] = Joint(point[1:], None, None)
-        ends = placement.joints[first.start], placement.joints[second.start], joints[self.pin]
-        self._enter(placement, motion_between(*ends, first.length, second.length))
+        pin = joints[self.pin]
+        first, second = (link_between(placement.joints[bar.start], pin, bar.length) for bar in self.bars)
+        divisor = cross(first.direction, second.direction), None
+        self._enter(placement, RockerMotion(first, second, pin, divisor, None))
 
     def requirement(self, placement):
         first, second = self.bars
@@ -240,17 +230,17 @@ class RockerGroup(Branch, RRRGroup):
     0.4
     """
 
-    coupler_length: Any
-    rocker_length: Any
-    pivot: Any
-    assembly: int = 1
-    coupler: Link = Link()
-    rocker: Link = Link()
-    on: str = "A"
-    pin: str = "B"
-    pivot_name: str = "O2"
-    label: str = ""
-    plane: Any = None
+    coupler_length: Annotated[Any, checks.Number("m", "coupler length", low=0.0, strict=True)]
+    rocker_length: Annotated[Any, checks.Number("m", "rocker length", low=0.0, strict=True)]
+    pivot: Annotated[Any, checks.Pair("m", "rocker pivot")]
+    assembly: Annotated[int, checks.Sign(tuple(change_points.SIDES))] = 1
+    coupler: GroupLink = Link()
+    rocker: GroupLink = Link()
+    on: Name = "A"
+    pin: Name = "B"
+    pivot_name: Name = "O2"
+    label: Label = ""
+    plane: Plane = None
     toggle: str = field(default="", init=False, repr=False)
     """Axis of the toggle that it makes with a slider."""
 
@@ -269,14 +259,7 @@ class RockerGroup(Branch, RRRGroup):
         RHOMBUS: "a = b = h = d",
     }
     """Crank a, coupler b, rocker h, ground d."""
-    RULES = checks.Rules(
-        "rocker group",
-        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
-        rocker_length=checks.Number("m", "rocker length", low=0.0, strict=True),
-        pivot=checks.Pair("m", "rocker pivot"),
-        assembly=checks.Sign(tuple(change_points.SIDES)),
-        **rules_of_parts(("coupler", "rocker"), "on", "pin", "pivot_name"),
-    )
+    RULES = checks.Rules("rocker group")
 
     @property
     def declaration(self):
@@ -401,28 +384,21 @@ class Dyad(RRRGroup):
     True
     """
 
-    length1: Any
-    length2: Any
-    on: Any = ("B", "C")
-    pin: str = "D"
-    assembly: int = 1
-    dyad1: Link = Link()
-    dyad2: Link = Link()
-    label: str = ""
-    plane: Any = None
+    length1: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    length2: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    on: Annotated[Any, TwoJoints()] = ("B", "C")
+    pin: Name = "D"
+    assembly: Annotated[int, checks.Sign()] = 1
+    dyad1: GroupLink = Link()
+    dyad2: GroupLink = Link()
+    label: Label = ""
+    plane: Plane = None
 
     LINKS: ClassVar = {"dyad1": "on", "dyad2": "on"}
     LENGTHS = "the lengths of {} and {}"
     TRUSTED = is_rigid_triangle = True
     PATHS: ClassVar = {"length1": "dyad1_length", "length2": "dyad2_length", "plane": "dyad1_plane"}
-    RULES = checks.Rules(
-        "dyad",
-        length1=checks.Number("m", low=0.0, strict=True),
-        length2=checks.Number("m", low=0.0, strict=True),
-        on=TwoJoints(),
-        assembly=checks.Sign(),
-        **rules_of_parts(("dyad1", "dyad2"), "pin"),
-    )
+    RULES = checks.Rules("dyad")
 
     @property
     def hangs_on(self):

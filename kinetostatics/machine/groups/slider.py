@@ -9,7 +9,7 @@ there, the words "open" and "crossed" let it run on (`change_points`).
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..dimensions import Span, within
-from ..group import FRAME, Bar, Declaration, Group, Point, Resolved, rules_of_parts
-from ..guide import Guide, slider_motion
+from ..group import FRAME, Bar, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
+from ..guide import Guide, SliderGuide, known_slider, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Turning, link_between
 from . import change_points, near_dead_centre
 from .branches import Branch, equality
@@ -48,7 +48,6 @@ TERMS = {
     "resolve.along": ("U", "force of the pin on the slider along the guide"),
     "resolve.across": ("V", "force of the pin on the slider across the guide"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class SliderMotion(NamedTuple):
@@ -69,10 +68,7 @@ class SliderMotion(NamedTuple):
 
 
 def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
-    """Coupler and slider for a given inner joint (kernel); a guide of None is +x, without offset.
-
-    `reached` comes from a special kernel for a pin of the crank; `swing` is given for a joint on a swinging link.
-    """
+    """Coupler and slider for an inner joint, of a swinging link or with a special kernel's `reached` (kernel)."""
     position, first, second = (rotate_back(vector_or_zero(part), guide.direction) for part in joint)
     across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
     if reached is None:
@@ -93,12 +89,7 @@ def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
-    """Forces on the coupler at its inner joint, on the slider at its pin and guide, and the guide's numbers (kernel).
-
-    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
-    the demands of further groups. The slider's balance along the guide gives the pin force along it, moments of the
-    coupler about its inner joint the pin force across; the guide carries the rest.
-    """
+    """Forces at inner joint, pin and guide; `push` is the applied force along the guide (kernel)."""
     on_slider = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = number_or_zero(coupler_load.moment) / coupler_length + motion.sine * along
@@ -157,28 +148,22 @@ class SliderGroup(checks.Checked, Branch, Group):
     0.24975
     """
 
-    coupler_length: Any
-    guide: Guide = Guide()
-    assembly: int = 1
-    coupler: Link = Link()
-    slider: Link = Link()
-    on: str = "A"
-    pin: str = "B"
-    label: str = ""
-    plane: Any = None
+    coupler_length: Annotated[Any, checks.Number("m", "coupler length", low=0.0, strict=True)]
+    guide: SliderGuide = Guide()
+    assembly: Annotated[int, checks.Sign(tuple(change_points.SIDES))] = 1
+    coupler: GroupLink = Link()
+    slider: GroupLink = Link()
+    on: Name = "A"
+    pin: Name = "B"
+    label: Label = ""
+    plane: Plane = None
     LINKS: ClassVar = {"coupler": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": "", "plane": "coupler_plane"}
     KINDS: ClassVar = {"": "none", FAR: "l = a - e", NEAR: "l = a + e", BOTH: "l = a and e = 0"}
     """Crank a, coupler l, offset e of the guide."""
     kernels = change_points.slid, near_dead_centre.slid
-    RULES = checks.Rules(
-        "slider group",
-        coupler_length=checks.Number("m", "coupler length", low=0.0, strict=True),
-        guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
-        assembly=checks.Sign(tuple(change_points.SIDES)),
-        **rules_of_parts(("coupler", "slider"), "on", "pin"),
-    )
+    RULES = checks.Rules("slider group")
 
     @property
     def declaration(self):
@@ -227,11 +212,9 @@ class SliderGroup(checks.Checked, Branch, Group):
 
     def follow(self, placement, joints):
         """Place coupler and slider at known joints."""
-        pin, direction = joints[self.pin], self.guide.direction
-        coupler = link_between(placement.joints[self.on], pin, self.coupler_length)
-        cosine, sine = rotate_back(coupler.direction, direction)
-        travel = Joint(*(rotate_back(part, direction)[0] for part in pin))
-        slider = LinkMotion(pin, direction, None, None)
+        slider, travel = known_slider(joints[self.pin], self.guide.direction)
+        coupler = link_between(placement.joints[self.on], joints[self.pin], self.coupler_length)
+        cosine, sine = rotate_back(coupler.direction, self.guide.direction)
         motion = SliderMotion(coupler, slider, sine, cosine, (cosine, None), None, travel)
         self.enter(placement, motion, travels={"slider": travel})
 

@@ -5,7 +5,7 @@ cot(beta). The travel is linear in the motion of A, so there is neither dead cen
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from ...numbers.planar import (
     vector_or_zero,
 )
 from ..dimensions import Angle, within
-from ..group import FRAME, Declaration, Group, Point, Resolved, rules_of_parts
-from ..guide import Guide, slider_motion
+from ..group import FRAME, Declaration, Group, GroupLink, Label, Name, Plane, Point, Resolved
+from ..guide import Guide, SliderGuide, known_slider, slider_motion
 from ..links import Joint, Link, LinkMotion, Slide, Sliding, Slot, Turning
 
 MIN_SLOT_SINE = 1e-9
@@ -35,7 +35,6 @@ TERMS = {
     "resolve.along": ("Q", "force on the slider along its guide"),
     "resolve.across": ("V", "force on the slider across its guide"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class YokeMotion(NamedTuple):
@@ -59,16 +58,9 @@ def place(joint, guide, slot_angle):
     slider = slider_motion(joint.position, (back, -rise), travel, guide)
     return YokeMotion(LinkMotion(joint, rotate(slot, guide.direction), None, None), slider, travel, rise, slot)
 
-    """Block and slider for a given joint (kernel); a guide direction of None is +x, an offset of None is zero."""
-
 
 def resolve(motion, guide, block_load, slider_load, push):
-    """Reactions, vectors at `on` and of the guide; scalars, force and moment of slot and of guide (kernel).
-
-    `push` is the applied force along the guide. Each load is the wrench of all other loads about the link's reference
-    joint, with the demands of groups further out. Equilibrium of the slider along the guide gives the slot force, which
-    acts across the slot. The slot takes the couple on the block, the guide those on block and slider.
-    """
+    """Reactions at `on` and of the guide; force and moment of slot and guide; `push` along the guide (kernel)."""
     cosine, sine = motion.slot
     along, across = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     slot = -plus(along, push) / sine
@@ -127,14 +119,14 @@ class YokeGroup(checks.Checked, Group):
     0.05
     """
 
-    guide: Guide = Guide()
-    slot_angle: Any = np.pi / 2
-    on: str = "A"
-    pin: str = "B"
-    slider: Link = Link()
-    block: Link = Link()
-    label: str = ""
-    plane: Any = None
+    guide: SliderGuide = Guide()
+    slot_angle: Annotated[Any, checks.Number("rad")] = np.pi / 2
+    on: Name = "A"
+    pin: Name = "B"
+    slider: GroupLink = Link()
+    block: GroupLink = Link()
+    label: Label = ""
+    plane: Plane = None
 
     def _parallel_slot_problem(self):
         """Yield the problem of designs whose slot is parallel to the guide."""
@@ -151,13 +143,7 @@ class YokeGroup(checks.Checked, Group):
     LINKS: ClassVar = {"block": "on", "slider": "pin"}
     TRUSTED = True
     PATHS: ClassVar = {"guide": "", "plane": "block_plane"}
-    RULES = checks.Rules(
-        "yoke group",
-        _parallel_slot_problem,
-        guide=checks.InstanceOf(Guide, "made by Guide.at or .through"),
-        slot_angle=checks.Number("rad"),
-        **rules_of_parts(("slider", "block"), "on", "pin"),
-    )
+    RULES = checks.Rules("yoke group", _parallel_slot_problem)
 
     @property
     def declaration(self):
@@ -190,11 +176,10 @@ class YokeGroup(checks.Checked, Group):
 
     def follow(self, placement, joints):
         """Place block and slider at known joints."""
-        joint, pin, guide = placement.joints[self.on], joints[self.pin], self.guide.line
-        travel = Joint(*(rotate_back(vector_or_zero(part), guide.direction)[0] for part in pin))
+        joint, guide = placement.joints[self.on], self.guide.line
+        slider, travel = known_slider(joints[self.pin], self.guide.direction)
         rise = minus(rotate_back(joint.position, guide.direction)[1], guide.offset)
         slot = cos(self.slot_angle), sin(self.slot_angle)
-        slider = LinkMotion(pin, self.guide.direction, None, None)
         block = LinkMotion(joint, rotate(slot, guide.direction), None, None)
         self.enter(placement, YokeMotion(block, slider, travel, rise, slot), travels={"slider": travel})
 

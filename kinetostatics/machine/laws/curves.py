@@ -107,10 +107,7 @@ class SineConstantCosine:
 
 @dataclass(frozen=True)
 class Powers:
-    """A rise that is a sum of powers, with as many vanishing derivatives at its end as it has powers, less one.
-
-    The coefficient of power n is the product of m / (m - n) over the other powers m.
-    """
+    """A rise by powers: the coefficient of power n is the product of m / (m - n) over the other powers m."""
 
     powers: tuple[int, ...]
 

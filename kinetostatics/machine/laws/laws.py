@@ -81,7 +81,7 @@ def _segment(owner, rise, angle, **positions):
     return Segment(found[0], found[-2], found[-1], rise)
 
 
-def harmonic(start, end, angle):
+def harmonic(start, end, angle) -> Segment:
     """Segment: simple harmonic motion, half a cosine; next to a dwell its acceleration jumps.
 
     Parameters
@@ -90,10 +90,6 @@ def harmonic(start, end, angle):
         Positions, m.
     angle : float
         Crank angle of the segment, rad.
-
-    Returns
-    -------
-    Segment
 
     Raises
     ------
@@ -147,7 +143,7 @@ def modified_trapezoid(start, end, angle):
     return _segment("modified_trapezoid", curves.MODIFIED_TRAPEZOID, angle, start=start, end=end)
 
 
-def polynomial(start, end, angle, powers="3-4-5"):
+def polynomial(start, end, angle, powers="3-4-5") -> Segment:
     """Segment: sum of powers of the angle with rest at both ends.
 
     Parameters
@@ -157,10 +153,6 @@ def polynomial(start, end, angle, powers="3-4-5"):
     powers : "3-4-5", "4-5-6-7" or sequence of int
         Two powers or more, from 2 to 15, rising. With the lowest power n, n - 1 derivatives are zero at the start; with
         k powers, k - 1 derivatives are zero at the end.
-
-    Returns
-    -------
-    Segment
 
     Raises
     ------
@@ -235,7 +227,7 @@ class Cosine(Law):
         return Motion(self.mean + even, -odd, -even, odd)
 
 
-def cosine(amplitude, mean, phase=0.0):
+def cosine(amplitude, mean, phase=0.0) -> Law:
     """Law of the whole turn: position = mean + amplitude cos(phi - phase), the simple harmonic motion.
 
     Parameters
@@ -246,10 +238,6 @@ def cosine(amplitude, mean, phase=0.0):
         Mid-stroke, m.
     phase : float
         Crank angle of the farthest position, rad.
-
-    Returns
-    -------
-    Law
 
     Raises
     ------
@@ -301,7 +289,7 @@ class JoinedLaw(Law):
         return Motion(*found)
 
 
-def joined(*segments, smooth="acceleration"):
+def joined(*segments, smooth="acceleration") -> Law:
     """Law of the whole turn from a sequence of segments that starts at crank angle 0: rise, dwell, return ...
 
     Parameters
@@ -311,10 +299,6 @@ def joined(*segments, smooth="acceleration"):
     smooth : "acceleration" or "velocity"
         Highest derivative that must not jump between segments. "velocity" allows jumps of the acceleration, and with it
         of the forces.
-
-    Returns
-    -------
-    Law
 
     Raises
     ------

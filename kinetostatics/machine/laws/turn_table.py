@@ -30,13 +30,7 @@ MAX_NOISE_RATIO = 3.0
 class TurnTable:
     """Values at angles within a turn, base of cams and laws from tables. `smoothing` is the noise, None to interpolate.
 
-    `OWNER`, `VALUE`, `VALUES` and `SECOND` are the words of messages for the table, its values and the second
-    derivative; `LOW` is a limit that the values must exceed.
-
-    Raises
-    ------
-    ParameterError
-        Fewer than 8 points, angles not rising or more than one turn, a gap, a value that is not finite.
+    `OWNER`, `VALUE`, `VALUES` and `SECOND` are words of messages; the values must exceed `LOW`.
     """
 
     angle: np.ndarray
@@ -67,12 +61,12 @@ class TurnTable:
             self._test_noise()
         if self.force_error >= 0.01:
             remedy = ", or state their noise to have them smoothed" if noise is None else ""
-            self._warn(
-                f"{angle.size} points are too coarse or too noisy. {self.SECOND} is uncertain by up to "
+            warnings.warn(
+                f"{owner}: {angle.size} points are too coarse or too noisy. {self.SECOND} is uncertain by up to "
                 f"{self.second_derivative_error:.2g} m (the {self.VALUES} scatter by {self.noise:.2g} m about a smooth "
                 f"curve), and forces by up to {self.force_error:.1%} where inertia is balanced. Measure more exactly, "
                 f"write more digits{remedy}",
-                stacklevel=4,
+                stacklevel=3,
             )
 
     def _test_noise(self):
@@ -85,15 +79,12 @@ class TurnTable:
             )
         if not scatter / MAX_NOISE_RATIO <= stated <= scatter * MAX_NOISE_RATIO:
             more = stated > scatter
-            self._warn(
-                f"the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the {scatter:.3g} m by which "
-                f"the {self.VALUE} values scatter; "
-                + ("true features are smoothed away too" if more else "noise is left in the curve"),
-                stacklevel=5,
+            kept = "true features are smoothed away too" if more else "noise is left in the curve"
+            warnings.warn(
+                f"{self.OWNER}: the noise stated, {stated:.3g} m, is {'more' if more else 'less'} than the "
+                f"{scatter:.3g} m by which the {self.VALUE} values scatter; {kept}",
+                stacklevel=4,
             )
-
-    def _warn(self, text, stacklevel):
-        warnings.warn(f"{self.OWNER}: {text}", stacklevel=stacklevel)
 
     @cached_property
     def splines(self):
@@ -113,12 +104,7 @@ class TurnTable:
 
     @cached_property
     def noise(self):
-        """Standard deviation of the values about a smooth curve; for values rounded to a step, 0.29 of the step.
-
-        It follows from the root mean square distance of the values from polynomials through `reach` neighbours on both
-        sides, for the reach with the smallest distance. It is scaled to the standard deviation of independent noise in
-        every value.
-        """
+        """Standard deviation of the values from polynomials through neighbours, the least over their number."""
         angle, values, size, found = self.angle, self.values, self.angle.size, []
         for reach in range(2, min(7, (size + 1) // 2)):
             turns, place = np.divmod(np.arange(size) + np.delete(np.arange(-reach, reach + 1), reach)[:, None], size)
@@ -136,9 +122,7 @@ class TurnTable:
     def second_derivative_error(self):
         """Expected largest error of the second derivative over the turn, from noise and coarseness of the table.
 
-        The spline through every second point has 2^4 times the truncation error, so the difference of both splines
-        bounds noise and truncation. A twelfth of it (1/15 and a margin for coarse tables) bounds the truncation. Noise
-        is bounded by `noise` too. The error of a smoothed table is estimated with other noise of the same size.
+        The spline through every second point has 16 times the truncation error: a twelfth of the difference bounds it.
         """
         nodes, _ = _periodic(self.angle, self.values)
         places = np.append(nodes[:-1], nodes[:-1] + np.diff(nodes) / 2)
@@ -157,11 +141,7 @@ class TurnTable:
 
     @cached_property
     def force_error(self):
-        """Expected largest error of a force, relative to its largest value, from noise and coarseness of the table.
-
-        It is the relative error of the acceleration at constant speed, times seven: springs or counterweights balance
-        inertia forces, but not their error, and leave a seventh of them.
-        """
+        """Error of the acceleration, relative, times seven: balancing cancels inertia forces but not their error."""
         largest = self._largest_acceleration()
         return BALANCING_RATIO * self.second_derivative_error / float(largest) if largest > 0 else math.inf
 

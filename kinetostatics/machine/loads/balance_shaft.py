@@ -12,9 +12,9 @@ known, (1 - n) tau on the bearings of both.
 Sources: F. W. Lanchester, *Engine balancing*, 1914; J. P. den Hartog, *Mechanical Vibrations*, 1956, chapter 5.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -107,25 +107,17 @@ class BalanceShaft(Load):
            [    0.,     0.,     0.,     0.]])
     """
 
-    unbalance: Any
-    ratio: Any = field(default=-1.0, metadata={"structural": True})
-    phase: Any = 0.0
-    at: Any = (0.0, 0.0)
-    inertia: Any = 0.0
-    mass: Any = field(default=0.0, kw_only=True)
-    plane: Any = field(default=0.0, kw_only=True)
+    unbalance: Annotated[Any, checks.Number("kg*m", low=0.0)]
+    ratio: Annotated[Any, RatioRule()] = field(default=-1.0, metadata={"structural": True})
+    phase: Annotated[Any, checks.Number("rad")] = 0.0
+    at: Annotated[Any, checks.Pair("m")] = (0.0, 0.0)
+    inertia: Annotated[Any, checks.Number("kg*m**2", low=0.0)] = 0.0
+    _: KW_ONLY
+    mass: Annotated[Any, checks.Number("kg", low=0.0)] = 0.0
+    plane: Annotated[Any, POSITION] = 0.0
 
     PATH, LENGTHS = "balance_shaft", ("phase",)
-    RULES = checks.Rules(
-        "balance shaft",
-        unbalance=checks.Number("kg*m", low=0.0),
-        ratio=RatioRule(),
-        phase=checks.Number("rad"),
-        at=checks.Pair("m"),
-        inertia=checks.Number("kg*m**2", low=0.0),
-        mass=checks.Number("kg", low=0.0),
-        plane=POSITION,
-    )
+    RULES = checks.Rules("balance shaft")
 
     @property
     def period(self):

@@ -20,10 +20,7 @@ _DEAD_CENTRES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
 def dead_centres(motion, slider):
     """Crank angles, rad, and coordinates, m, of the far and the near dead centre of a slider: two pairs.
 
-    Numbers, or arrays (designs, 1); NaN where the mechanism does not close all round. The crank angles lie in the
-    period that begins at `FIRST_ANGLE`. On a slider whose stroke is centred on O, as that of a yoke, the far dead
-    centre is ahead in the direction of the guide. `ParameterError` if the slider dwells or does not go to and fro once,
-    `NotGivenError` if lengths are traced numbers or enclosures.
+    Numbers, or arrays (designs, 1), from `FIRST_ANGLE` on; NaN where the mechanism does not close all round.
     """
     known = _DEAD_CENTRES.setdefault(motion.mechanism, {})
     if slider not in known:

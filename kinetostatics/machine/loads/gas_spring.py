@@ -13,8 +13,8 @@ the piston. Its work is the integral of the force: the potential energy, zero at
 The integral from 0 to 1 by Gauss's rule has no singular case at n = 1 (isothermal), where it is 1.
 """
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import exp, log
 from ...numbers.planar import minus, plus, product
 from ..links import present
-from .load import Symbol
+from .load import Symbol, angles_text
 from .slider import SliderLoad
 
 _nodes, _weights = np.polynomial.legendre.leggauss(16)
@@ -37,7 +37,6 @@ TERMS = {
     "_compression.ratio": ("L", "logarithm of the compression V0/V"),
     "pressure_at.found": ("p", "absolute pressure of the gas"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,14 +89,19 @@ class GasSpring(SliderLoad):
     -1797.4 N, 0.000 J
     """
 
-    area: Any
-    volume: Any
-    pressure: Any
-    at: Any = field(kw_only=True)
-    side: int = field(default=1, kw_only=True)
-    exponent: Any = field(default=1.3, kw_only=True)
-    ambient: Any = field(default=101325.0, kw_only=True)
-    on: str = field(default="slider", kw_only=True)
+    area: Annotated[
+        Any, checks.Number("m**2", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in mm2?", 1e-6))
+    ]
+    volume: Annotated[
+        Any, checks.Number("m**3", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in litres?", 1e-3))
+    ]
+    pressure: Annotated[Any, checks.Number("Pa", low=0.0, strict=True, usual=PRESSURES)]
+    _: KW_ONLY
+    at: Annotated[Any, checks.Number("m")]
+    side: Annotated[int, checks.Sign()] = 1
+    exponent: Annotated[Any, checks.Number("1", low=1.0)] = 1.3
+    ambient: Annotated[Any, checks.Number("Pa", low=0.0, usual=PRESSURES)] = 101325.0
+    on: str = "slider"
 
     PATH, LENGTHS, REFUSES = "gas_spring", ("at",), True
 
@@ -106,18 +110,7 @@ class GasSpring(SliderLoad):
         if checks.has_known_values(self.exponent) and np.any(np.asarray(self.exponent) > MAX_EXPONENT):
             yield f"exponent must be at most {MAX_EXPONENT:g}, got {checks.shown(self.exponent)}"
 
-    RULES = checks.Rules(
-        "gas spring",
-        _exponent_problems,
-        area=checks.Number("m**2", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in mm2?", 1e-6)),
-        volume=checks.Number("m**3", low=0.0, strict=True, usual=checks.PlausibleRange(10.0, "is it in litres?", 1e-3)),
-        pressure=checks.Number("Pa", low=0.0, strict=True, usual=PRESSURES),
-        at=checks.Number("m"),
-        side=checks.Sign(),
-        exponent=checks.Number("1", low=1.0),
-        ambient=checks.Number("Pa", low=0.0, usual=PRESSURES),
-        on=checks.Name(),
-    )
+    RULES = checks.Rules("gas spring", _exponent_problems)
 
     def push(self, motion):
         """Force on the slider along the guide, N."""
@@ -158,16 +151,14 @@ class GasSpring(SliderLoad):
         with np.errstate(invalid="ignore"):
             gone = volume <= 0.0
         if gone.any():
-            angle = np.degrees(np.unique(np.broadcast_to(motion.crank_angle, gone.shape)[gone]))
-            many = ", ".join(f"{part:.6g}" for part in angle[:3])
             worst = np.unravel_index(np.nanargmin(volume), volume.shape)
             given, area, at, left = (
                 np.broadcast_to(part, gone.shape)[worst] for part in (self.volume, self.area, self.at, volume)
             )
             yield checks.Problem(
-                f"{self.title}: no volume is left at {angle.size} crank angles, {'the first ' * (angle.size > 3)}"
-                f"{many} deg. Its {given:.6g} m3 at {at:.6g} m end at {at - self.side * given / area:.6g} m, but the "
-                f"slider goes on by up to {-left / area:.6g} m. Give more volume or less area, or the other side",
+                f"{self.title}: no volume is left {angles_text(motion, gone)}. Its {given:.6g} m3 at {at:.6g} m end at "
+                f"{at - self.side * given / area:.6g} m, but the slider goes on by up to {-left / area:.6g} m. Give "
+                "more volume or less area, or the other side",
                 gone,
             )
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import reduce
-from typing import Any
+from typing import Annotated, Any
 
 from ...numbers import checks
 from ...numbers.lazy import cached_property
@@ -39,15 +39,13 @@ class Gravity(Load):
     9.81
     """
 
-    acceleration: Any = 9.81
-    direction: Any = -math.pi / 2
+    acceleration: Annotated[
+        Any, checks.Number("m/s**2", low=0.0, usual=checks.PlausibleRange(100.0, "is it in mm/s2?", 1e-3))
+    ] = 9.81
+    direction: Annotated[Any, checks.Number("rad")] = -math.pi / 2
 
     PATH = "gravity"
-    RULES = checks.Rules(
-        "gravity",
-        acceleration=checks.Number("m/s**2", low=0.0, usual=checks.PlausibleRange(100.0, "is it in mm/s2?", 1e-3)),
-        direction=checks.Number("rad"),
-    )
+    RULES = checks.Rules("gravity")
 
     @cached_property
     def vector(self):

@@ -146,10 +146,7 @@ class Load(checks.Checked, Batched):
         return Support(total.force, None, total.moment)
 
     def sense(self, motion) -> Any:
-        """Sign of its value in the poses of a motion, 1 or -1.
-
-        Where the value is zero or missing, as beyond a table, the sign of its largest value; 1 for a function.
-        """
+        """Sign of its value in the poses of a motion, 1 or -1; where it is 0 or missing, of its largest value."""
         here: Any = 0.0
         value = self.value_now
         if isinstance(value, Table):
@@ -170,11 +167,7 @@ class Load(checks.Checked, Batched):
 class Jumps:
     """Jumps of a load where the motion that it opposes changes its sense, or its work begins or ends.
 
-    Attributes
-    ----------
-    angles : function
-        From a motion to the crank angles of its jumps over the period of the motion, (1 or designs, J), rad; NaN pads
-        the rows.
+    `angles` gives their crank angles over the period of a motion, (1 or designs, J), rad, padded by NaN.
     """
 
     angles: Callable[[Any], Any]
@@ -206,6 +199,13 @@ def has_no_user_code(item):
     return isinstance(item, Load) and not callable(item.value_now)
 
 
+def angles_text(motion, where):
+    """Words for the crank angles of a motion at which a mask holds, the first three in degrees."""
+    angle = np.degrees(np.unique(np.broadcast_to(motion.crank_angle, where.shape)[where]))
+    many = ", ".join(f"{part:.6g}" for part in angle[:3])
+    return f"at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} deg"
+
+
 def value_of(item):
     """Force or moment of a load, also of one of the user's own: see `Load.value_now`."""
     return item.value_now if isinstance(item, Load) else getattr(item, "force", None)
@@ -228,13 +228,7 @@ def kink_sources(loads):
 
 
 def kinks_of(part, motion):
-    """Crank angles of kinks, (K,), and of jumps, (J,), that a part declares, rad, wrapped into its period.
-
-    Raises
-    ------
-    ParameterError
-        It returns something other than two arrays of finite crank angles.
-    """
+    """Crank angles of kinks, (K,), and of jumps, (J,), that a part declares, rad, wrapped into its period."""
     found = part.kinks(motion)
     try:
         kinks, jumps = (np.ravel(np.asarray(angles, dtype=float)) for angles in found)

@@ -6,30 +6,20 @@ oppositely on both.
 """
 
 import math
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Annotated, Any
 
 import numpy as np
 
 from ...numbers import checks
 from ...numbers.arithmetic import guarded_divisor, sqrt
-from ...numbers.planar import (
-    add_vectors,
-    dot,
-    length,
-    moment,
-    plus,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-    vector_or_zero,
-)
+from ...numbers.planar import dot, length, moment, plus, rotate, scale_vector, subtract_vectors, vector_or_zero
 from ..crank import ray
 from ..dimensions import of_place, within
 from ..group import FRAME, Point
 from ..links import Wrench, arm, present
 from ..supports import Support
-from .load import Load, Symbol, value_rule
+from .load import Load, Symbol, angles_text, value_rule
 
 PLACE_FORMS = 'a joint ("B"), a place on a link ("coupler", along, across) or a fixed point (x, y)'
 NAME = checks.Name()
@@ -148,7 +138,6 @@ TERMS = {
     "share": ("h", "share of their motion in their direction, zero unless they meet"),
     "shortening": ("z", "rate of separation of the points over their distance"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 
 
 class ForceRule(checks.OrFunction):
@@ -213,19 +202,14 @@ class Force(PlacedLoad):
     True
     """
 
-    value: Any
-    at: Any = field(default=None, kw_only=True)
-    direction: Any = field(default=0.0, kw_only=True)
-    along: Any = field(default=None, kw_only=True)
+    value: Annotated[Any, ForceRule(checks.Number("N", table=True))]
+    _: KW_ONLY
+    at: Annotated[Any, PlaceRule()] = None
+    direction: Annotated[Any, checks.Number("rad")] = 0.0
+    along: Annotated[Any, checks.Optional(checks.Name())] = None
 
     PATH, VALUE, OVER_ANGLES, LENGTHS = "force", "value", ("value",), ("at",)
-    RULES = checks.Rules(
-        "force",
-        value=ForceRule(checks.Number("N", table=True)),
-        at=PlaceRule(),
-        direction=checks.Number("rad"),
-        along=checks.Optional(checks.Name()),
-    )
+    RULES = checks.Rules("force")
 
     @property
     def title(self):
@@ -265,7 +249,7 @@ class Force(PlacedLoad):
 class PointLoad(PlacedLoad):
     """A load along the line of two points `between`."""
 
-    between: Any
+    between: Annotated[Any, PlacePairRule()]
 
     REFUSES, SIGN, REMEDY = True, "line", ""
 
@@ -320,12 +304,9 @@ class PointLoad(PlacedLoad):
             size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
             meet = np.hypot(*(first - second)) <= MEETING_DISTANCE * size
         if meet.any():
-            angle = np.unique(np.broadcast_to(motion.crank_angle, meet.shape)[meet])
-            many = ", ".join(f"{part:.6g}" for part in np.degrees(angle[:3]))
             yield checks.Problem(
-                f"{self.title}: the points meet at {angle.size} crank angles, {'the first ' * (angle.size > 3)}{many} "
-                f"deg, so its force has no direction there; leave them out, or move a point off the line"
-                f"{self.REMEDY}",
+                f"{self.title}: the points meet {angles_text(motion, meet)}, so its force has no direction there; "
+                f"leave them out, or move a point off the line{self.REMEDY}",
                 meet,
             )
 
@@ -355,11 +336,12 @@ class PointForce(PointLoad):
     True
     """
 
-    value: Any
-    between: Any = field(kw_only=True)
+    value: Annotated[Any, value_rule("N")]
+    _: KW_ONLY
+    between: Any
 
     PATH, VALUE, OVER_ANGLES, LENGTHS = "point_force", "value", ("value",), ("between",)
-    RULES = checks.Rules("point force", value=value_rule("N"), between=PlacePairRule())
+    RULES = checks.Rules("point force")
 
     def pull(self, motion):
         """Force on the first point, N."""
@@ -404,17 +386,13 @@ class PointSpring(PointLoad):
     True
     """
 
-    stiffness: Any
-    free_length: Any = 0.0
-    between: Any = field(kw_only=True)
+    stiffness: Annotated[Any, checks.Number("N/m", low=0.0)]
+    free_length: Annotated[Any, checks.Number("m", low=0.0)] = 0.0
+    _: KW_ONLY
+    between: Any
 
     PATH, LENGTHS, SIGN = "point_spring", ("free_length", "between"), "spring"
-    RULES = checks.Rules(
-        "point spring",
-        stiffness=checks.Number("N/m", low=0.0),
-        free_length=checks.Number("m", low=0.0),
-        between=PlacePairRule(),
-    )
+    RULES = checks.Rules("point spring")
     REMEDY = ", or give free_length 0"
 
     def pull(self, motion):
@@ -466,12 +444,13 @@ class PointDamper(PointLoad):
     True
     """
 
-    coefficient: Any
-    between: Any = field(kw_only=True)
+    coefficient: Annotated[Any, checks.Number("N*s/m", low=0.0)]
+    _: KW_ONLY
+    between: Any
 
     PATH, LENGTHS, REFUSES, SIGN = "point_damper", ("between",), False, "damper"
     DISSIPATES = True
-    RULES = checks.Rules("point damper", coefficient=checks.Number("N*s/m", low=0.0), between=PlacePairRule())
+    RULES = checks.Rules("point damper")
 
     def pull(self, motion):
         """Force on the first point, N; None if neither point moves or the coefficient is 0."""
@@ -483,11 +462,7 @@ class PointDamper(PointLoad):
         return scale_vector(-self.coefficient * motion.crank_speed * shortening, d)
 
     def _directed_distance(self, motion):
-        """Vector from the second point to the first and its derivative by the crank angle; None if neither moves.
-
-        Where the points meet the vector is only rounding, so it is moved along its derivative, the direction in which
-        the points pass each other. The move fades with the fourth power of the distance.
-        """
+        """Vector between the points, moved along its derivative where they meet, and the derivative; or None."""
         first, second = (motion.spot(place) for place in self.between)
         if first.first is None and second.first is None:
             return None
@@ -497,6 +472,5 @@ class PointDamper(PointLoad):
         square = dot(slope, slope)
         near = MEETING_SQUARE * (sum(dot(part, part) for part in positions) + square)
         share = near / (near + dot(d, d) + MIN_SQUARE)
-        return add_vectors(
-            d, scale_vector(MEETING_LOOKAHEAD * sqrt(near / (square + MIN_SQUARE)) * share * share, slope)
-        ), slope
+        ahead = MEETING_LOOKAHEAD * sqrt(near / (square + MIN_SQUARE)) * share * share
+        return (d[0] + ahead * slope[0], d[1] + ahead * slope[1]), slope

@@ -17,23 +17,14 @@ series.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from ...errors import ParameterError
 from ...numbers import checks
-from ...numbers.planar import (
-    add_vectors,
-    minus,
-    number_or_zero,
-    plus,
-    product,
-    rotate,
-    scale_vector,
-    subtract_vectors,
-)
+from ...numbers.planar import add_vectors, minus, number_or_zero, plus, product, rotate, scale_vector, subtract_vectors
 from ..dimensions import ORIGIN, Span
 from ..links import acceleration_of, present
 from ..supports import Support
@@ -49,7 +40,7 @@ REACTIONS = ("outside", "frame")
 class SliderLoad(Load):
     """A load on the slider `on` along its guide; the frame takes the opposite force on the same line."""
 
-    on: str
+    on: Annotated[str, checks.Name()]
 
     def push(self, motion) -> Any:
         """Force on the slider along the guide, N."""
@@ -125,24 +116,17 @@ class Spring(SliderLoad):
     1.875 N
     """
 
-    stiffness: Any
-    free_position: Any
+    stiffness: Annotated[Any, checks.Number("N/m", low=0.0)]
+    free_position: Annotated[Any, checks.Number("m")]
     on: str = "slider"
-    cubic: Any = 0.0
-    mass: Any = 0.0
+    cubic: Annotated[Any, checks.Number("N/m**3")] = 0.0
+    mass: Annotated[Any, checks.Number("kg", low=0.0)] = 0.0
 
     PATH, LENGTHS = "spring", ("free_position",)
-    RULES = checks.Rules(
-        "spring",
-        stiffness=checks.Number("N/m", low=0.0),
-        free_position=checks.Number("m"),
-        on=checks.Name(),
-        cubic=checks.Number("N/m**3"),
-        mass=checks.Number("kg", low=0.0),
-    )
+    RULES = checks.Rules("spring")
 
     @classmethod
-    def balancing(cls, mass, crank_speed, free_position, on="slider", *, spring_mass=0.0):
+    def balancing(cls, mass, crank_speed, free_position, on="slider", *, spring_mass=0.0) -> "Spring":
         """Spring that balances the inertia force of a slider with a cosine law.
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
@@ -162,10 +146,6 @@ class Spring(SliderLoad):
             The slider.
         spring_mass : float
             Mass of all springs together, kg.
-
-        Returns
-        -------
-        Spring
 
         Raises
         ------
@@ -272,7 +252,7 @@ def spring_masses(loads: Iterable[Any]) -> dict[str, SpringMass]:
 class WorkForce(SliderLoad):
     """Process force on a slider; the frame or an external body takes the opposite force."""
 
-    reaction: str
+    reaction: Annotated[str, checks.Word(REACTIONS)]
 
     def rests_on_frame(self, mechanism):
         return self.reaction == "frame"
@@ -320,10 +300,11 @@ class ProcessForce(WorkForce):
     -10.0
     """
 
-    force: Any
+    force: Annotated[Any, value_rule("N")]
     on: str = "slider"
-    period: Any = field(default=None, kw_only=True, metadata={"structural": True})
-    reaction: str = field(default="outside", kw_only=True)
+    _: KW_ONLY
+    period: Annotated[Any, WholeTurns()] = field(default=None, metadata={"structural": True})
+    reaction: str = "outside"
 
     PATH, VALUE, OVER_ANGLES = "process_force", "force", ("force",)
 
@@ -338,14 +319,7 @@ class ProcessForce(WorkForce):
         if known != self.period:
             yield f"the period is {self.period!r}, but that of its force {known!r}; leave it out"
 
-    RULES = checks.Rules(
-        "process force",
-        _period_problems,
-        force=value_rule("N"),
-        on=checks.Name(),
-        period=WholeTurns(),
-        reaction=checks.Word(REACTIONS),
-    )
+    RULES = checks.Rules("process force", _period_problems)
 
     @property
     def value_now(self):

@@ -51,10 +51,7 @@ _DRIVES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
 
 
 def drive_of(mechanism, slider):
-    """Highest significant harmonic of a slider's acceleration, per turn, and its coordinate over the period, m.
-
-    None if the mechanism does not close all around, or its numbers are unknown.
-    """
+    """Highest significant harmonic of a slider's acceleration, per turn, and its coordinate, m; or None."""
     known = _DRIVES.setdefault(mechanism, {})
     if slider not in known:
         count = SAMPLES * mechanism.turns

@@ -164,7 +164,7 @@ class Table:
         )
 
     @classmethod
-    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None, zero=None, sense=1):
+    def from_csv(cls, path, unit="N", area=None, period=TURN, slider=None, over=None, zero=None, sense=1) -> "Table":
         """Read a table with two or three columns, each headed by its name and a unit that converts.
 
         Parameters
@@ -182,10 +182,6 @@ class Table:
             As of the table.
         over : "angle" or "travel", optional
             Column to read if the file has both; by default the travel.
-
-        Returns
-        -------
-        Table
 
         Raises
         ------

@@ -174,10 +174,7 @@ CHEBYSHEV_FIT = np.linalg.pinv(chebyshev.chebvander(CHEBYSHEV_POINTS, SMOOTH_DEG
 
 @lru_cache(maxsize=32)
 def kink_rows(table, tolerance=KINK_TOLERANCE):
-    """Numbers of the rows at which a table kinks, (K,); over the travel only inner rows.
-
-    `tolerance` is relative to the largest value.
-    """
+    """Rows at which a table kinks by more than `tolerance` times its largest value, (K,); over travel inner rows."""
     room = tolerance * abs(table.largest)
     if table.over == "angle":
         # around the largest value, with a period before and behind
@@ -307,9 +304,7 @@ MIN_BOUND = 2.0**-1000
 def rounding_bound(table, motion):
     """Bound on the error of values of a table over the angle at its exact angles, (..., N), N or N m.
 
-    A slope has three roundings, the rise along it two more, the sum with the row's value one; a level piece has none.
-    The bound of a piece is that at its end. The end of the last piece is rounded too. In other turns all rows move by
-    rounding, so near a row the next piece may be read.
+    A slope has three roundings, the rise along it two more, the sum one; in other turns a row moves by rounding.
     """
     x, (y,) = table.closed()
     rise = np.abs(np.diff(y))

@@ -3,8 +3,8 @@
 Couples are positive counter-clockwise on the link `on`, N m; `against` takes the opposite couple.
 """
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Annotated, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -13,7 +13,7 @@ from ...numbers import checks
 from ...numbers.arithmetic import atan, sign
 from ...numbers.planar import minus, number_or_zero, product, rotate_back
 from ..crank import ray
-from ..group import FRAME
+from ..group import FRAME, Name
 from ..links import Wrench, present
 from ..supports import Support
 from .load import Jumps, Load, Symbol, unknown_sense, value_rule
@@ -25,21 +25,21 @@ TERMS = {
     "_angle.cosine": ("c", "cosine of the angle from where the spring is free"),
     "_angle.sine": ("s", "sine of that angle"),
 }
-"""Symbol and meaning of lines of the kernels in hand calculations."""
 DRAG = checks.Number("N*m", "an opposing value", low=0.0)
 """Rule of the magnitude of an opposing torque."""
 PROBE_ANGLES = np.linspace(0.1, 6.3, 720)
 """Crank angles of a turn, rad, at which the link of an opposing torque must turn somewhere."""
 MIN_RATIO = 1e-9
 """Angular velocity of a link that turns, over the crank speed."""
-LINK_RULES = {"on": checks.Name(), "against": checks.Optional(checks.Name())}
+TURNED = checks.PlausibleRange(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
+"""Plausible angles of a torsion spring, rad."""
 
 
 class Couple(Load):
     """A couple on the link `on` against another, or the frame."""
 
-    on: str
-    against: Any
+    on: Name
+    against: Annotated[Any, checks.Optional(checks.Name())]
 
     UNIT, SIGN = "N m", "couple"
 
@@ -123,14 +123,15 @@ class Torque(Couple):
     [0.0, 0.0]
     """
 
-    value: Any
-    on: str = field(kw_only=True)
-    against: Any = field(default=None, kw_only=True)
-    opposing: bool = field(default=False, kw_only=True)
+    value: Annotated[Any, value_rule("N*m")]
+    _: KW_ONLY
+    on: str
+    against: Any = None
+    opposing: Annotated[bool, checks.Truth()] = False
 
     PATH, VALUE, OVER_ANGLES = "torque", "value", ("value",)
     REFUSES = DISSIPATES = property(lambda self: self.opposing, doc="Whether it opposes the motion.")
-    RULES = checks.Rules("torque", value=value_rule("N*m"), **LINK_RULES, opposing=checks.Truth())
+    RULES = checks.Rules("torque")
 
     def __post_init__(self):
         super().__post_init__()
@@ -205,22 +206,15 @@ class TorsionSpring(Couple):
     True
     """
 
-    stiffness: Any
-    free_angle: Any = 0.0
-    on: str = field(kw_only=True)
-    against: Any = field(default=None, kw_only=True)
-    moment: Any = field(default=0.0, kw_only=True)
+    stiffness: Annotated[Any, checks.Number("N*m/rad", low=0.0)]
+    free_angle: Annotated[Any, checks.Number("rad", usual=TURNED)] = 0.0
+    _: KW_ONLY
+    on: str
+    against: Any = None
+    moment: Annotated[Any, checks.Number("N*m")] = 0.0
 
     PATH, LENGTHS, REFUSES, SIGN = "torsion_spring", ("free_angle",), True, "spiral"
-    RULES = checks.Rules(
-        "torsion spring",
-        stiffness=checks.Number("N*m/rad", low=0.0),
-        free_angle=checks.Number(
-            "rad", usual=checks.PlausibleRange(20.0, "more than three turns; is it in degrees?", np.pi / 180.0)
-        ),
-        **LINK_RULES,
-        moment=checks.Number("N*m"),
-    )
+    RULES = checks.Rules("torsion spring")
 
     def couple(self, motion):
         """Couple on the link, N m."""
@@ -322,12 +316,13 @@ class TorsionDamper(Couple):
     5.0
     """
 
-    coefficient: Any
-    on: str = field(kw_only=True)
-    against: Any = field(default=None, kw_only=True)
+    coefficient: Annotated[Any, checks.Number("N*m*s", low=0.0)]
+    _: KW_ONLY
+    on: str
+    against: Any = None
 
     PATH, SIGN, DISSIPATES = "torsion_damper", "ring", True
-    RULES = checks.Rules("torsion damper", coefficient=checks.Number("N*m*s", low=0.0), **LINK_RULES)
+    RULES = checks.Rules("torsion damper")
 
     def couple(self, motion):
         """Couple on the link, N m."""

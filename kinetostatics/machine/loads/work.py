@@ -10,9 +10,9 @@ f. This is from `start` at the foot of the edges to `end` at their tips. It cuts
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from functools import reduce
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from ...numbers.planar import add_vectors, number_or_zero, product, rotate
 from ..links import Wrench, present
 from .dead_centres import dead_centres
 from .load import Jumps, unknown_sense
-from .slider import REACTIONS, WorkForce
+from .slider import WorkForce
 from .table import Table
 from .table_pieces import TURN, stops_and_crossings
 
@@ -42,14 +42,10 @@ TERMS = {
     "push.meeting": ("q", "opposite of their product: positive while sections cut"),
     "push.cutting": ("z", "share of the force that acts: 1 while sections cut"),
 }
-"""Symbols and meanings of kernel lines in hand calculations."""
 
 
 class StrokeForce(WorkForce):
-    """A load on the stroke of a slider that reciprocates once in the period of the motion.
-
-    `ends` are the coordinates of its far and its near dead centre from the crank, m, if known.
-    """
+    """A load on the stroke of a slider; `ends`: coordinates of its far and near dead centre, m, if known."""
 
     ends: Any
     REFUSES = STROKE = True
@@ -126,17 +122,21 @@ class Sawing(StrokeForce):
     [10667, 0]
     """
 
-    kerf: Any = field(kw_only=True)
-    height: Any = field(kw_only=True)
-    saws: Any = field(kw_only=True)
-    feed_per_stroke: Any = field(kw_only=True)
-    resistance: Any = field(kw_only=True)
-    cuts: str = field(default="toward crank", kw_only=True)
-    thrust: Any = field(default=0.0, kw_only=True)
-    overhang: Any = field(default=0.0, kw_only=True)
-    pitch: Any = field(default=None, kw_only=True)
-    on: str = field(default="slider", kw_only=True)
-    reaction: str = field(default="frame", kw_only=True)
+    _: KW_ONLY
+    kerf: Annotated[Any, checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.1, MILLIMETRES, 1e-3))]
+    height: Annotated[Any, checks.Number("m", low=0.0, usual=checks.PlausibleRange(5.0, MILLIMETRES, 1e-3))]
+    saws: Annotated[Any, checks.Number("1", low=0.0)]
+    feed_per_stroke: Annotated[Any, checks.Number("m", low=0.0, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3))]
+    resistance: Annotated[
+        Any,
+        checks.OrFunction(checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, MEGAPASCALS, 1e6, least=1e4))),
+    ]
+    cuts: Annotated[str, checks.Word(tuple(CUTS))] = "toward crank"
+    thrust: Annotated[Any, checks.Number("1")] = 0.0
+    overhang: Annotated[Any, checks.Number("m")] = 0.0
+    pitch: Annotated[Any, checks.Optional(checks.Number("m", low=0.0))] = None
+    on: str = "slider"
+    reaction: str = "frame"
     ends: Any = field(default=None, init=False, repr=False)
 
     PATH, VALUE, UNIT = "sawing", "resistance", "Pa"
@@ -150,23 +150,7 @@ class Sawing(StrokeForce):
         elif not callable(self.resistance) and self.pitch is not None:
             yield "pitch is for a resistance that is a function of the chip thickness; leave it out"
 
-    RULES = checks.Rules(
-        "sawing",
-        _joint_problems,
-        kerf=checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.1, MILLIMETRES, 1e-3)),
-        height=checks.Number("m", low=0.0, usual=checks.PlausibleRange(5.0, MILLIMETRES, 1e-3)),
-        saws=checks.Number("1", low=0.0),
-        feed_per_stroke=checks.Number("m", low=0.0, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3)),
-        resistance=checks.OrFunction(
-            checks.Number("Pa", low=0.0, usual=checks.PlausibleRange(1e10, MEGAPASCALS, 1e6, least=1e4))
-        ),
-        cuts=checks.Word(tuple(CUTS)),
-        thrust=checks.Number("1"),
-        overhang=checks.Number("m"),
-        pitch=checks.Optional(checks.Number("m", low=0.0)),
-        on=checks.Name(),
-        reaction=checks.Word(REACTIONS),
-    )
+    RULES = checks.Rules("sawing", _joint_problems)
 
     @property
     def value_now(self):
@@ -254,12 +238,13 @@ class Mowing(StrokeForce):
     [0, 600, -600]
     """
 
-    force: Any
-    pitch: Any = field(kw_only=True)
-    start: Any = field(kw_only=True)
-    end: Any = field(kw_only=True)
-    on: str = field(default="slider", kw_only=True)
-    reaction: str = field(default="frame", kw_only=True)
+    force: Annotated[Any, checks.Number("N", low=0.0)]
+    _: KW_ONLY
+    pitch: Annotated[Any, checks.Number("m", low=0.0, strict=True, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3))]
+    start: Annotated[Any, checks.Number("m", low=0.0)]
+    end: Annotated[Any, checks.Number("m", low=0.0, strict=True)]
+    on: str = "slider"
+    reaction: str = "frame"
     ends: Any = field(default=None, init=False, repr=False)
 
     PATH = "mowing"
@@ -270,16 +255,7 @@ class Mowing(StrokeForce):
         if all(map(checks.has_known_values, row)) and np.any((self.start >= self.end) | (self.end > self.pitch)):
             yield "start must be less than end, and end at most the pitch; got " + ", ".join(map(checks.shown, row))
 
-    RULES = checks.Rules(
-        "mowing",
-        _joint_problems,
-        force=checks.Number("N", low=0.0),
-        pitch=checks.Number("m", low=0.0, strict=True, usual=checks.PlausibleRange(1.0, MILLIMETRES, 1e-3)),
-        start=checks.Number("m", low=0.0),
-        end=checks.Number("m", low=0.0, strict=True),
-        on=checks.Name(),
-        reaction=checks.Word(REACTIONS),
-    )
+    RULES = checks.Rules("mowing", _joint_problems)
 
     def push(self, motion):
         """Force on the slider along the guide, N."""

@@ -8,7 +8,7 @@ import math
 import warnings
 from dataclasses import dataclass
 from dataclasses import field as dataclass_field
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple, get_args, get_origin
 
 import numpy as np
 
@@ -399,9 +399,24 @@ class Rules:
 
 
 class Checked:
-    """A dataclass whose fields keep to its table of rules."""
+    """A dataclass whose fields keep to its table of rules.
+
+    A field ``Annotated[type, rule]`` has this rule, also where a derived class declares it again with a plain type.
+    """
 
     RULES: ClassVar[Rules]
+    FIELD_RULES: ClassVar[dict[str, Any]] = {}
+
+    def __init_subclass__(cls, **options):
+        super().__init_subclass__(**options)
+        own, rules = cls.__annotations__, dict(cls.FIELD_RULES)
+        for name, kind in own.items():
+            if get_origin(kind) is Annotated:
+                own[name], rules[name] = get_args(kind)
+        inherited = [name for name in rules if name not in own]
+        cls.FIELD_RULES = {name: rules[name] for name in (*inherited, *own) if name in rules}
+        if table := vars(cls).get("RULES"):
+            cls.RULES = Rules(table.owner, table.also, **cls.FIELD_RULES | table.rules)
 
     def __post_init__(self):
         rules = self.RULES

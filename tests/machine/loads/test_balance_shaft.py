@@ -16,11 +16,7 @@ from support.every import every
 RATIOS = 1, -1, 2, -2, Fraction(1, 2), -1.5
 SHAFT = ks.BalanceShaft(0.06, -2, 0.7, (0.2, -0.1), 0.03, mass=4.0)
 GRAVITY = ks.Gravity(9.81, -1.2)
-LINKS = {
-    "crank": ks.Link(2.0, (0.03, 0.01), 0.02),
-    "coupler": ks.Link(1.0, (0.1, 0.01), 0.01),
-    "slider": ks.Link(4.0),
-}
+LINKS = {"crank": ks.Link(2.0, (0.03, 0.01), 0.02), "coupler": ks.Link(1.0, (0.1, 0.01), 0.01), "slider": ks.Link(4.0)}
 
 
 def pump(*shafts, speed=30.0, acceleration=50.0, **changes):
@@ -105,6 +101,7 @@ def newton_euler(scene, angle):
     return found[8], force, moment
 
 
+@pytest.mark.slow
 @every("speed, acceleration", [(30.0, 50.0), (-30.0, 50.0), (0.0, -40.0)])
 @every("ratio", RATIOS)
 def test_torque_and_frame_by_newton_and_euler(ratio, speed, acceleration):
@@ -121,6 +118,7 @@ def test_torque_and_frame_by_newton_and_euler(ratio, speed, acceleration):
 # Laws
 
 
+@pytest.mark.slow
 @every("ratio", RATIOS)
 def test_power_frame_and_energy_balance(ratio):
     s = pump(replace(SHAFT, ratio=ratio)).solve(24)
@@ -153,6 +151,7 @@ def test_place_on_the_frame():
     assert found.couple[0] == pytest.approx(3.0 * 0.06 * GRAVITY.vector[1])
 
 
+@pytest.mark.slow
 @every("ratio, turns", [(2, 1), (Fraction(1, 2), 2), (-1.5, 2), ("2/3", 3), (1 / 7, 7), (np.float64(0.25), 4)])
 def test_the_period_grows_to_the_denominator(ratio, turns):
     scene = pump(replace(SHAFT, ratio=ratio))
@@ -163,6 +162,7 @@ def test_the_period_grows_to_the_denominator(ratio, turns):
     assert ks.Scene(scene.mechanism, 1.0, loads=[SHAFT]).period == pytest.approx(2 * np.pi)
 
 
+@pytest.mark.slow
 def test_free_body_of_the_crank_and_shares():
     s = pump(SHAFT).solve(np.linspace(0.0, 6.0, 5))
     actions = free_body(s.dynamics, "crank")

@@ -55,6 +55,7 @@ def test_loss_over_a_turn_is_twice_the_swing(speed):
     assert s.efficiency == 0.0
 
 
+@pytest.mark.slow
 @every("speed", (10.0, -10.0))
 @every("name", ("O", "A", "B", "balancing_torque"))
 def test_reactions_by_the_constraint_equations_of_all_bodies(speed, name):

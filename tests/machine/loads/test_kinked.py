@@ -11,6 +11,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.machine.loads import Table, has_significant_kinks, kink_sources, period_on
+from support.every import every
 from support.sweeping import sweep
 
 PUMP = ks.crank_slider(0.05, 0.19, guide_offset=0.01, coupler=ks.Link(1.0, 0.1, 0.01), slider=ks.Link(2.0))
@@ -59,7 +60,7 @@ def test_what_declares_kinks_is_found_and_nothing_else():
     assert period_on(found[1], PUMP) == 2 * np.pi
 
 
-@pytest.mark.parametrize("kind", LOADS)
+@every("kind", LOADS)
 def test_a_pulse_that_is_declared_is_swept_whole(kind):
     scene = ks.Scene(PUMP, 30.0, loads=[LOADS[kind]])
     outputs = ["largest B", "smallest_at balancing_torque", "mean balancing_torque"]
@@ -91,7 +92,7 @@ class Declaring(Pulse):
 OUTSIDE = ([8.0], [1.0 - 4 * np.pi, 1.0 + 2e-5 + 2 * np.pi, -1.0]), ([9.0, -20.0], [[1.0], [1.0 + 2e-5]])
 
 
-@pytest.mark.parametrize("declared", OUTSIDE)
+@every("declared", OUTSIDE)
 def test_kinks_outside_the_period_are_wrapped(declared):
     tables = [
         sweep(
@@ -107,9 +108,7 @@ def test_kinks_outside_the_period_are_wrapped(declared):
         assert tables[1][name].to_numpy() == pytest.approx(tables[0][name].to_numpy(), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    "declared", [None, [1.0, 2.0, 3.0], ([np.nan], [1.0]), ([], [np.inf]), (["a"], []), ([1j], [])]
-)
+@every("declared", [None, [1.0, 2.0, 3.0], ([np.nan], [1.0]), ([], [np.inf]), (["a"], []), ([1j], [])])
 def test_wrong_kink_angles_are_refused_by_name(declared):
     s = ks.solve(PUMP, 0.0, crank_speed=30.0, loads=ks.ProcessForce(Declaring(declared)))
     with pytest.raises(ks.ParameterError, match=r"Declaring\.kinks must return two arrays of finite crank angles"):
@@ -197,7 +196,7 @@ def test_tables_are_frozen_comparable_and_pickled():
         table.period = TURN
 
 
-@pytest.mark.parametrize("turns", [1, 2, 3, 7])
+@every("turns", [1, 2, 3, 7])
 def test_whole_turns_are_taken_up_to_rounding(turns):
     assert ks.ProcessForce(1.0).period == TURN
     assert ks.ProcessForce(1.0, period=turns * TURN * (1 + 1e-12)).period == turns * TURN

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import largest
 
 CRANK, COUPLER = 0.1, 0.4
@@ -26,7 +27,7 @@ def test_damper_at_meeting_points_takes_its_limit():
     assert largest(pushed(damper, angles) + 20.0 * s.slider_velocity) < 1e-12 * largest(20.0 * s.slider_velocity)
 
 
-@pytest.mark.parametrize("angle", np.linspace(0.2, 6.0, 7))
+@every("angle", np.linspace(0.2, 6.0, 7))
 def test_nearly_meeting_points_are_refused(angle):
     """Near O coordinates are small, and what rounding leaves between the points is not."""
     ram = ks.SliderGroup(0.3, ks.Guide.at(np.pi), on="B", pin="C", label="2")
@@ -37,7 +38,7 @@ def test_nearly_meeting_points_are_refused(angle):
             ks.solve(mechanism, angle, crank_speed=1.0, loads=ks.PointForce(1.0, between=("C", (x + off, 0.0))))
 
 
-@pytest.mark.parametrize("ulps", [(0, 0), (1, -1), (-3, 2), (0, 4)])
+@every("ulps", [(0, 0), (1, -1), (-3, 2), (0, 4)])
 def test_damper_at_nearly_meeting_points_is_right(ulps):
     """The line between them is rounding then, and must not be taken for a direction."""
     angles = np.linspace(0.1, 6.2, 23)
@@ -48,7 +49,7 @@ def test_damper_at_nearly_meeting_points_is_right(ulps):
         assert abs(torque - 20.0 * 9.0 * CRANK**2) < 1e-8
 
 
-@pytest.mark.parametrize("end", [0.5, 0.3])
+@every("end", [0.5, 0.3])
 def test_damper_at_a_standing_dead_centre_gives_0(end):
     angle = 0.0 if end == 0.5 else np.pi
     found = pushed(ks.PointDamper(20.0, between=("B", (end, 0.0))), np.array([angle, angle + 1e-6]))
@@ -67,9 +68,7 @@ def test_spring_without_free_length_is_exact():
     assert largest(s.reaction("B")[0] - 300.0 * (s.slider_position - 0.5)) < 1e-13
 
 
-@pytest.mark.parametrize(
-    "item", [ks.PointSpring(300.0, 0.1, between=("B", (0.5, 0.0))), ks.PointForce(3.0, between=((0.5, 0.0), "B"))]
-)
+@every("item", [ks.PointSpring(300.0, 0.1, between=("B", (0.5, 0.0))), ks.PointForce(3.0, between=((0.5, 0.0), "B"))])
 def test_meeting_points_are_refused_with_the_angle(item):
     with pytest.raises(ks.ParameterError, match=r"between .*'B'.*: the points meet at 1 crank angles, 0 deg"):
         ks.solve(PUMP, [0.0, 1.0], crank_speed=9.0, loads=item)

@@ -154,6 +154,7 @@ def test_a_spring_on_a_slider_without_mass():
     assert far(light.balancing_torque, heavy.balancing_torque) < 1e-13
 
 
+@pytest.mark.slow
 def test_springs_on_other_sliders_and_followers():
     spring = ks.Spring(300.0, 0.4, "slider2", mass=2.0)
     s = ks.solve(six_bar(), TURN, crank_speed=9.0, crank_acceleration=-4.0, loads=[ks.Gravity(), spring])
@@ -244,6 +245,7 @@ def chain(count, stiffness, mass, frequency):
     return k * (1.0 - np.linalg.solve(matrix, right)[-1]) - 0.5 * m * frequency**2
 
 
+@pytest.mark.slow
 @every("ratio", [20.0, 5.0, 2.66, 1.3])
 def test_the_stiffness_of_the_end_is_that_of_a_chain_of_masses(ratio):
     stiffness, mass = 700.0, 3.0
@@ -301,12 +303,7 @@ def test_a_hint_names_the_surge_ratio_below_five():
     [
         ([0.0, 400.0], [0.0, 1.0], 10.0, None),  # the first has no mass to swing
         ([4.0, 400.0], [1.0, 1.0], [0.1, 10.0], None),  # each at its own speed
-        (
-            [4.0, 400.0],
-            [0.1, 1.0],
-            10.0,
-            "ratio is 1.99, .*With 0.1 kg it swings between its ends at 19.87 rad/s",
-        ),
+        ([4.0, 400.0], [0.1, 1.0], 10.0, "ratio is 1.99, .*With 0.1 kg it swings between its ends at 19.87 rad/s"),
         ([400.0, 400.0], [1.0, 1.0], [10.0, 20.0], "ratio is 3.14, .*drives it at 20 rad/s"),
     ],
 )
@@ -328,6 +325,7 @@ def test_stiffening_springs_swing_faster():
     assert hints(1.59, cubic=1e4) == []
 
 
+@pytest.mark.slow
 def test_surge_takes_the_mass_of_the_spring():
     s = pump(3.0)
     by_default, given = ks.design.spring_surge(s), ks.design.spring_surge(pump(), 3.0)

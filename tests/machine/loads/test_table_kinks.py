@@ -10,13 +10,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.machine.links import Joint
 from kinetostatics.machine.loads import table_pieces
-from kinetostatics.machine.loads.table_pieces import (
-    KINK_TOLERANCE,
-    STOP_SAMPLES,
-    TURN,
-    kink_rows,
-    stops_and_crossings,
-)
+from kinetostatics.machine.loads.table_pieces import KINK_TOLERANCE, STOP_SAMPLES, TURN, kink_rows, stops_and_crossings
 from kinetostatics.numbers.sign_changes import SAMPLE_OFFSET
 from kinetostatics.studies.methods.high_precision.enclosures import enclosure
 from support.every import every
@@ -190,7 +184,8 @@ def exactly(table, angle):
     return y[row] + (y[row + 1] - y[row]) / (x[row + 1] - x[row]) * (place - x[row])
 
 
-@pytest.mark.parametrize(("first", "turns"), [(0.0, 1), (0.1, 2), (-2.7, 1), (-777.3, 2)])
+@pytest.mark.slow
+@every("first, turns", [(0.0, 1), (0.1, 2), (-2.7, 1), (-777.3, 2)])
 def test_values_by_angle_lie_within_their_rounding(first, turns):
     rng, period = np.random.default_rng(7), 2 * np.pi * turns
     for _ in range(8):
@@ -256,7 +251,7 @@ def test_beside_a_row_the_next_slope_counts(flint):
     assert bound[-1] < 1e-200
 
 
-@pytest.mark.parametrize("beside", [0.0, 5e-8, -5e-8])
+@every("beside", [0.0, 5e-8, -5e-8])
 def test_at_the_end_of_a_stroke_a_table_jumps(beside):
     """At the inner end both ways are 0; the outer end is a row at which they differ by a peak, or lies just beside."""
     pump = ks.crank_slider(0.05, 0.2)

@@ -34,6 +34,7 @@ def stops(mechanism):
     return {"TDC": by_size[-1][1], "BDC": by_size[0][1]}
 
 
+@pytest.mark.slow
 @every("name", [name for name in MACHINES if name != "yoke"])
 @every("zero", ["TDC", "BDC"])
 @every("sense", [1, -1])
@@ -184,14 +185,10 @@ def test_each_slider_has_its_own_dead_centre():
 
 
 @every(
-    ("mechanism", "load", "message"),
+    "mechanism, load, message",
     [
         (FOUR_BAR, ks.Force(TABLE, at="B"), "table from its TDC: the mechanism has no slider"),
-        (
-            V_TWIN,
-            ks.Torque(TABLE, on="crank"),
-            "has sliders 'slider', 'slider2': choose one, slider=",
-        ),
+        (V_TWIN, ks.Torque(TABLE, on="crank"), "has sliders 'slider', 'slider2': choose one, slider="),
         (V_TWIN, ks.Torque(ks.Table(AFTER_TDC, GAS, zero="TDC", slider="ram"), on="crank"), "'ram'"),
         (SHORT, ks.ProcessForce(TABLE), "crank-slider does not close at all crank angles, so 'slider' has no TDC"),
         (
@@ -207,7 +204,7 @@ def test_a_dead_centre_that_is_not_there_is_refused(mechanism, load, message):
 
 
 @every(
-    ("options", "message"),
+    "options, message",
     [
         ({"zero": "top"}, "zero must be text of a number and a unit.*\"90 deg\"; or write 'TDC' or 'BDC'"),
         ({"zero": "3 mm"}, "zero .*does not measure the same as"),
@@ -228,7 +225,7 @@ def test_what_is_no_zero_or_sense_is_refused(options, message):
 
 
 @every(
-    ("options", "speed", "message"),
+    "options, speed, message",
     [
         ({}, 100.0, "-9000 N at 15 deg, is 75 deg from the dead centres of 'slider', TDC at 90 deg.*zero=\"TDC\""),
         ({"zero": 0.0}, 100.0, None),
@@ -252,10 +249,7 @@ def test_a_peak_far_from_the_dead_centres_gives_a_hint(options, speed, message):
             warnings.warn(given[0].message, stacklevel=1)
 
 
-@every(
-    "angle",
-    [0.0, np.pi, np.radians(15.0), np.radians(-40.0)],
-)
+@every("angle", [0.0, np.pi, np.radians(15.0), np.radians(-40.0)])
 def test_a_peak_near_a_dead_centre_gives_no_hint(angle):
     table = ks.Table(AFTER_TDC, GAS)
     machine = ks.crank_slider(0.05, 0.2, guide_angle=angle)

@@ -18,7 +18,7 @@ def solved(table, angles=ANGLES, speed=100.0, **options):
     return ks.solve(PUMP, angles, crank_speed=speed, loads=ks.ProcessForce(table), **options)
 
 
-@pytest.mark.parametrize("speed", [100.0, -100.0])
+@every("speed", [100.0, -100.0])
 def test_diagram_follows_the_current_stroke(speed):
     s = solved(DIAGRAM, speed=speed)
     forward, back = (np.interp(s.slider_position, X, values) for values in (DIAGRAM.y, DIAGRAM.back))
@@ -55,7 +55,7 @@ def test_derivatives_go_through_the_travel_of_a_table():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("over", ["angle", "travel"])
+@every("over", ["angle", "travel"])
 def test_any_load_takes_a_table(over):
     x, y = ([0.0, 2.0, 4.0], [1.0, 5.0, 2.0]) if over == "angle" else ([-2.0, 0.5, 2.0], [1.0, 5.0, 2.0])
     table = ks.Table(x, y, over=over)
@@ -132,7 +132,7 @@ def two_turns(back):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("back", [False, True])
+@every("back", [False, True])
 def test_second_turn_of_a_branch_is_known(back):
     """Work and peaks of both turns, beside values at many crank angles by hand."""
     scene, table = two_turns(back)
@@ -178,8 +178,7 @@ def torque(table, angles, length=0.2, speed=100.0):
 
 @pytest.mark.slow
 @pytest.mark.slow_start
-@every("name", TABLES)
-@every("speed", [100.0, -100.0])
+@every("name, speed", [*((name, 100.0) for name in TABLES), ("both strokes", -100.0)])
 def test_jax_reads_tables_as_numpy_does(double, name, speed):
     expected = torque(TABLES[name], MANY, speed=speed)
     for run in (double.jit(torque, static_argnums=0), torque):
@@ -196,11 +195,9 @@ def test_jax_gradients_equal_the_recorded_ones(double, name):
     scene = ks.Scene(pump, 100.0, loads=[ks.ProcessForce(TABLES[name]), ks.Gravity()])
     program = ks.compile(scene, "balancing_torque", engine="numpy")
     expected = program.derivatives(MANY, ["coupler_length", "crank_speed"])["balancing_torque"]
-    for place, path in ((2, "coupler_length"), (3, "crank_speed")):
-        slope = double.jit(double.jacfwd(torque, argnums=place), static_argnums=0)
-        for angles in (MANY, double.numpy.asarray(MANY)):
-            found = np.asarray(slope(TABLES[name], angles, 0.2, 100.0))
-            assert largest(found - expected[path]) <= 1e-13 * largest(expected[path]), path
+    slopes = double.jit(double.jacfwd(torque, argnums=(2, 3)), static_argnums=0)(TABLES[name], MANY, 0.2, 100.0)
+    for path, found in zip(expected, slopes, strict=True):
+        assert largest(np.asarray(found) - expected[path]) <= 1e-13 * largest(expected[path]), path
 
 
 @pytest.mark.slow
@@ -226,7 +223,7 @@ def test_traced_rows_are_refused_with_a_remedy(double):
 
 
 @every(
-    ("text", "options", "words"),
+    "text, options, words",
     [
         ("crank_angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),
         ("crank angle [deg], force [kN]\n0, 1\n120, 2\n240, 3\n", {}, None),

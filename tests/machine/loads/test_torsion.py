@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
+from support.every import every
 from support.machines import largest
 from support.scenes import six_bar
 
@@ -38,7 +39,7 @@ TWELVE = np.linspace(0.0, 2 * np.pi, 12, endpoint=False)
 ARM = ks.Mechanism("arm", ks.Crank(0.5, ks.Link(3.0, (0.2, 0.1), 0.0)), ())
 
 
-@pytest.mark.parametrize("direction", [-np.pi / 2, 0.0, 2.0])
+@every("direction", [-np.pi / 2, 0.0, 2.0])
 def test_torque_at_rest_holds_the_weight(direction):
     s = ks.solve(ARM, TWELVE, crank_speed=0.0, loads=ks.Gravity(9.81, direction))
     x, y = s.position("crank")
@@ -61,8 +62,8 @@ def test_the_torque_is_the_slope_of_the_potential():
 BAR = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1))
 
 
-@pytest.mark.parametrize(
-    ("item", "words"),
+@every(
+    "item, words",
     [
         (ks.TorsionSpring(4.0, 0.1, on="crank"), r"passes half a turn .* 185.8 deg, .* it makes full turns"),
         (ks.TorsionSpring(4.0, 0.1, on="rocker", against="crank"), "it makes full turns"),
@@ -74,8 +75,8 @@ def test_spring_beyond_half_a_turn_is_refused(item, words):
         ks.solve(BAR, 0.7, crank_speed=1.0, loads=item)
 
 
-@pytest.mark.parametrize(
-    ("lengths", "on"),
+@every(
+    "lengths, on",
     [
         ((0.1, 0.2, 0.2, 0.1), "rocker"),  # turns once in two turns of the crank
         ((0.2, 0.2, 0.1, 0.1), "coupler"),  # passes half a turn at crank angle 0
@@ -102,7 +103,7 @@ def test_coupler_turning_with_crank_takes_no_spring():
     assert ks.solve(double_crank, 0.7, crank_speed=1.0, loads=together).power_residual < 1e-13
 
 
-@pytest.mark.parametrize("free", [-0.6, 0.9, 1.5, 4.4, 1.5 - 4 * np.pi])
+@every("free", [-0.6, 0.9, 1.5, 4.4, 1.5 - 4 * np.pi])
 def test_the_angle_is_the_principal_one_to_rounding(free):
     """Against angles of positions with 40 digits; free angles may be wound up by whole turns."""
     s = ks.solve(BAR, np.linspace(0, 6, 7), crank_speed=1.0, loads=ks.TorsionSpring(7.0, free, on="rocker", moment=2.0))

@@ -450,10 +450,7 @@ def test_no_stroke_no_force():
     twice = ks.Mechanism(
         "two strokes a turn",
         ks.Crank(0.1),
-        (
-            ks.RockerGroup(0.4, 0.3, (0.35, 0.1)),
-            ks.SliderGroup(0.5, ks.Guide.at(1.3, 0.2), on="B", pin="C", label="2"),
-        ),
+        (ks.RockerGroup(0.4, 0.3, (0.35, 0.1)), ks.SliderGroup(0.5, ks.Guide.at(1.3, 0.2), on="B", pin="C", label="2")),
     )
     with pytest.raises(ks.ParameterError, match="changes its direction 4 times"):
         ks.solve(twice, TURN, crank_speed=1.0, loads=sawing(on="slider2")).balancing_torque  # noqa: B018
