@@ -421,6 +421,7 @@ def panels(count, columns, width, height, more=0.0):
 
 DPI = 150
 """Dots per inch of figures in files."""
+WITHOUT_LAYOUT = {"figure.autolayout": False, "figure.constrained_layout.use": False}
 
 
 def save_figure(figure, path, salt=None, **options):
@@ -428,12 +429,12 @@ def save_figure(figure, path, salt=None, **options):
     import matplotlib.pyplot as plt
 
     kind = Path(path).suffix[1:] or "png"
-    with plt.rc_context({"svg.hashsalt": salt}), write_atomically(path) as temporary:
+    with plt.rc_context({"svg.hashsalt": salt} | WITHOUT_LAYOUT), write_atomically(path) as temporary:
         metadata = {"Date": None} if kind == "svg" else {}
-        if engine := figure.get_layout_engine():  # once; `savefig` would draw the figure for it, and again
+        if engine := figure.get_layout_engine():  # once; with an engine, even "none", `savefig` draws a figure twice
             figure.set_dpi(DPI)
             engine.execute(figure)
-            figure.set_layout_engine("none")
+            figure.set_layout_engine(None)
         figure.savefig(temporary, format=kind, dpi=DPI, metadata=metadata, **options)
     plt.close(figure)
     return Path(path)
