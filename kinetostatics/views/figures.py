@@ -7,6 +7,7 @@ import textwrap
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -187,10 +188,15 @@ def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
     return figure
 
 
+PROPORTIONS: WeakKeyDictionary[Any, float] = WeakKeyDictionary()
+
+
 def _proportion(solution):
     """Width of the drawing of a mechanism over its height."""
-    size = drawings.mechanism(solution, ax=Figure().subplots()).dataLim
-    return float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
+    if solution not in PROPORTIONS:
+        size = drawings.mechanism(solution, ax=Figure().subplots()).dataLim
+        PROPORTIONS[solution] = float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
+    return PROPORTIONS[solution]
 
 
 def _mechanisms(solutions, counted=FROM_X) -> Figure:
