@@ -234,8 +234,8 @@ def test_memory_stays_flat(session):
     usual = gc.get_threshold()
     gc.set_threshold(700, 10, 10)  # as in a process without tests
     try:
-        before = change(1000)
-        assert change(2000) - before < LEAK * 2000
+        before = change(500)
+        assert change(1000) - before < LEAK * 1000
     finally:
         gc.set_threshold(*usual)
 
