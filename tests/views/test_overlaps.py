@@ -21,7 +21,7 @@ def test_texts_on_each_other_are_found():
 
 
 LIKE = {"sawframe_2r63": ("optimal", "cutting", "friction"), "mower_drive": ("optimal",)}
-"""Endings of cases whose machines are those of another one with other numbers: figures that it has are not drawn again."""
+"""Endings of cases with the machines of another one: figures that it has are not drawn again."""
 
 
 @pytest.mark.slow
