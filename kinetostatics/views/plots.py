@@ -16,11 +16,7 @@ from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs, rocking_moment
 from .mass_centres import mass_centres, principal_points
-from .sizing_bearings import bearing
-from .sizing_mount import mount
-from .sizing_play import contact_loss
-from .sizing_sections import sections
-from .sizing_springs import helical_spring
+from .sizing import bearing, contact_loss, helical_spring, mount, sections
 from .sketches import sketch
 
 __all__ = [
