@@ -64,6 +64,23 @@ def axes(ax):
     return plt.subplots(layout="constrained")[1]
 
 
+def several_axes(owner, ax, rows, columns, size, **options):
+    """The given axes, or those in rows and columns of a new figure of a size in inches."""
+    count = rows * columns
+    few = None if ax is None or len(np.ravel(ax)) == count else f"ax must be {count} Axes, got {checks.shown(ax)}"
+    checks.require(owner, few)
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(rows, columns, layout="constrained", figsize=size, **options)[1]
+
+
+def require_kind(owner, item, kind, wanted):
+    """Raise an error unless an item is of a class; `wanted` says what it must be."""
+    checks.require(owner, None if isinstance(item, kind) else f"{wanted}, got {checks.shown(item)}")
+
+
 def solutions_by_label(solutions, name):
     """Solutions by label; a single solution has the label of the quantity."""
     checks.require("plots", checks.quantity(name))

@@ -299,7 +299,6 @@ def front(found, ax=None):
     Parameters
     ----------
     found : design.Front
-    ax : matplotlib Axes, optional
 
     Examples
     --------

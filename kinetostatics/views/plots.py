@@ -2,8 +2,9 @@
 
 Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result. `solutions`
 is one `Solution` or a mapping of label to `Solution`. Where a figure shows one machine only, a mapping gets a panel for
-each, and the result is a list of Axes. ``units={"force": "kN", "length": "mm"}`` chooses units, as of `in_units`. A
-quantity that the mechanism lacks raises `QuantityError`, a batch of designs `ParameterError`.
+each, and the result is a list of Axes. Drawings, hodographs and cams have equal scales on both axes.
+``units={"force": "kN", "length": "mm"}`` chooses units, as of `in_units`. A quantity that the mechanism lacks raises
+`QuantityError`, a batch of designs `ParameterError`.
 """
 
 from .animations import animation

@@ -5,17 +5,28 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
 from ..machine.group import FRAME
 from ..machine.loads import TURN
-from ..numbers import checks
 from ..sizing.bearings import Bearing
 from ..sizing.foundation import WAYS, Mount
 from ..sizing.play import ContactLoss
 from ..sizing.springs import HelicalSpring
 from ..solution.sections import Sections
 from .axis_units import with_units
-from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, display_unit, finish_axes, panels
+from .canvas import (
+    ACCENT,
+    FROM_X,
+    INK,
+    LOAD,
+    STEEL,
+    axes,
+    close_curve,
+    display_unit,
+    finish_axes,
+    panels,
+    require_kind,
+    several_axes,
+)
 from .hodographs import write_angles
 
 BEARING_ANGLES, MARKS = 1440, 8
@@ -45,8 +56,7 @@ def bearing(found):
     >>> figure.axes[1].get_title()
     'on the crank:\npoint load'
     """
-    if not isinstance(found, Bearing):
-        raise ParameterError(f"bearing: found must be a Bearing, of ks.sizing.bearing, got a {type(found).__name__}")
+    require_kind("bearing", found, Bearing, "found must be a Bearing, as of ks.sizing.bearing")
     at = found.solution.moved_to(np.linspace(0.0, found.solution.period, BEARING_ANGLES, endpoint=False))
     curves = zip(found.pin.rings, found.pin.in_rings(at), strict=True)
     rings = {ring: curve for ring, curve in curves if np.isfinite(curve).all()}
@@ -92,11 +102,6 @@ def contact_loss(result, ax=None):
     Parameters
     ----------
     result : ContactLoss
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------
@@ -107,8 +112,7 @@ def contact_loss(result, ax=None):
     >>> ks.plots.contact_loss(found).get_title()
     'joint O: index infinite, largest impact 1.9 J'
     """
-    if not isinstance(result, ContactLoss):
-        raise ParameterError(f"contact_loss: result must be a ContactLoss of ks.sizing, got {result!r}")
+    require_kind("contact_loss", result, ContactLoss, "result must be a ContactLoss of ks.sizing")
     ax, degrees = axes(ax), np.degrees(result.angle)
     factor, unit = display_unit("N", [result.force])
     ax.plot(degrees, factor * result.force, color=STEEL, ls="--", label="|F| without play")
@@ -162,8 +166,7 @@ def mount(result):
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['velocity, x [mm/s]', 'amplitude, x [N]']
     """
-    if not isinstance(result, Mount):
-        raise ParameterError(f"mount: result must be a Mount, as of ks.sizing.mount, got a {type(result).__name__}")
+    require_kind("mount", result, Mount, "result must be a Mount, as of ks.sizing.mount")
     order, angle = result.order, np.linspace(0.0, TURN / result.order[0], 721)
     curves = np.real(1j * order * result.crank_speed * result.displacement @ np.exp(1j * np.outer(order, angle)))
     moving = [way for way, curve in zip(WAYS, curves, strict=True) if np.any(curve)] or ["x"]
@@ -211,15 +214,9 @@ def sections(found, ax=None):
     >>> four[2].get_ylabel()
     'bending moment [kN m]'
     """
-    import matplotlib.pyplot as plt
-
     found = getattr(found, "sections", found)
-    wrong = f"found must be Sections, as of Solution.sections, got {checks.shown(found)}"
-    four: Any = ax
-    few = None if ax is None or len(np.ravel(ax)) == 4 else f"ax must be 4 Axes, got {checks.shown(ax)}"
-    checks.require("sections", None if isinstance(found, Sections) else wrong, few)
-    if ax is None:
-        four = plt.subplots(4, 1, layout="constrained", figsize=(6.4, 8.0))[1]
+    require_kind("sections", found, Sections, "found must be Sections, as of Solution.sections")
+    four: Any = several_axes("sections", ax, 4, 1, (6.4, 8.0))
     angle = np.linspace(0.0, found.solution.period, SECTION_ANGLES + 1)
     whole = replace(found, solution=found.solution.moved_to(angle))
     axial = max(found.largest_tension, found.largest_compression)
@@ -274,13 +271,9 @@ def helical_spring(spring, ax=None):
     >>> haigh.get_xlabel()
     'mean stress [MPa]'
     """
-    import matplotlib.pyplot as plt
-
-    wrong = f"spring must be a HelicalSpring, as of ks.sizing.helical_spring, got {checks.shown(spring)}"
-    few = None if ax is None or len(np.ravel(ax)) == 2 else f"ax must be 2 Axes, got {checks.shown(ax)}"
-    checks.require("helical_spring", None if isinstance(spring, HelicalSpring) else wrong, few)
-    if ax is None:
-        ax = plt.subplots(1, 2, layout="constrained", figsize=(8.4, 4.2), width_ratios=(1.6, 1.0))[1]
+    wanted = "spring must be a HelicalSpring, as of ks.sizing.helical_spring"
+    require_kind("helical_spring", spring, HelicalSpring, wanted)
+    ax = several_axes("helical_spring", ax, 1, 2, (8.4, 4.2), width_ratios=(1.6, 1.0))
     haigh, drawing = np.ravel(ax)
     mean, alternating = spring.mean_stress / 1e6, spring.alternating_stress / 1e6
     means = np.array([0.0, spring.endurance[0], spring.ultimate_stress])
