@@ -77,7 +77,7 @@ def several_axes(owner, ax, rows, columns, size, **options):
 
 
 def require_kind(owner, item, kind, wanted):
-    """Raise an error unless an item is of a class; `wanted` says what it must be."""
+    """Raise an error unless an item is of a class; it begins with the sentence `wanted`."""
     checks.require(owner, None if isinstance(item, kind) else f"{wanted}, got {checks.shown(item)}")
 
 
@@ -317,15 +317,9 @@ def set_equal_scales(ax, moving=()):
 def with_peaks(named, *quantities):
     """Solutions by label with added crank angles: extremes of quantities, and kinks of tables and friction.
 
-    All solutions get the angles of all, so coincident curves remain so. A solution is unchanged if nothing is
-    known between its crank angles, or these do not rise.
-
-    Parameters
-    ----------
-    named : mapping of label to Solution
-        Each of one design.
-    quantities : str or function
-        As for `extremes`; vectors by their magnitude.
+    Each solution is of one design; quantities are as for `extremes`, vectors by their magnitude. All get the angles of
+    all, so coincident curves remain so. A solution is unchanged if nothing is known between its crank angles, or these
+    do not rise.
     """
     known = {name: solution for name, solution in named.items() if _is_known_between(solution)}
     more = [np.empty(0)]

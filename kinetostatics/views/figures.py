@@ -53,27 +53,11 @@ FONT: Any = {"font.size": 9}
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
-    """Draw the figures of a case into a folder, each of the variants compared with one reference.
+    """Draw the figures of a case into a folder, each of the variants compared with one reference; returns the paths.
 
-    Parameters
-    ----------
-    case : Case
-    folder : path
-        Created if missing; each file is written whole or not at all.
-    file_format : "png" or "svg"
-    only : str, optional
-        Name of a single figure.
-    progress : function, optional
-        Iterates over the names of the figures while they are drawn.
-
-    Returns
-    -------
-    list of Path
-
-    Raises
-    ------
-    ParameterError
-        The figure is unknown; the message lists the names. Or the files cannot be written.
+    `only` names a single figure, `progress` iterates over the names of the figures while they are drawn. The folder is
+    created if missing; each file, "png" or "svg", is written whole or not at all. `ParameterError` if the figure is
+    unknown, with the known names, or if the files cannot be written.
     """
     checks.require("figures", checks.case("case", case))
     figures = figures_of(case)

@@ -134,15 +134,9 @@ def _mean(label, solution):
 
 
 class Sensitivity(NamedTuple):
-    """Derivative of an output by the number at a path.
+    """Derivative `slope` of an output by the number at a path, in the unit of the output over that of the number.
 
-    Attributes
-    ----------
-    path : str
-    slope : float
-        In the unit of the output over that of the number.
-    share : float
-        Change of the output in percent, for one percent of the number; NaN where either is zero.
+    `share` is the change of the output in percent for one percent of the number; NaN where either is zero.
     """
 
     path: str
@@ -161,31 +155,9 @@ class Sensitivities(NamedTuple):
 def sensitivities(scene, text) -> Sensitivities:
     """Exact derivatives of an output by every number of a scene, also those that are zero.
 
-    Parameters
-    ----------
-    scene : Scene
-    text : str
-        As for `ks.design.optimise`: "largest O", "mean_absolute balancing_torque".
-
-    Raises
-    ------
-    ParameterError, QuantityError
-        The output is unknown.
-    NotGivenError
-        A load or cam of the user's own does more than recorded arithmetic.
-    DesignError
-        The output has no finite value; or its quantity grows without bound, or has no correct digit somewhere.
-    KinetostaticsError
-        As of `Scene.solve`.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> from kinetostatics.views.explore.answers import sensitivities
-    >>> scene = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
-    >>> found = sensitivities(scene, "largest_absolute balancing_torque")
-    >>> [(row.path, round(row.share, 3)) for row in found.rows[:4]]
-    [('crank_length', 2.147), ('crank_speed', 2.0), ('slider.mass', 1.0), ('coupler_length', -0.147)]
+    `text` names the output as for `ks.design.optimise`: "largest O", "mean_absolute balancing_torque".
+    `KinetostaticsError` if the output is unknown, has no finite value, or grows without bound or has no correct digit
+    somewhere; also if a load of the user's own does more than recorded arithmetic.
     """
     output: Any = parse_output(text, scene)
     solution = scene.solve(COUNT)
@@ -216,20 +188,9 @@ class Band(NamedTuple):
 
 
 def bands(solution, names, uncertainties) -> Iterator[Band]:
-    """First-order bands of `COVERAGE` standard uncertainties around curves, one a step.
+    """First-order bands of `COVERAGE` standard uncertainties, SI by path, around curves, one a step.
 
-    Parameters
-    ----------
-    solution : Solution
-    names : sequence of str
-        Quantities; the band of a vector is that of its magnitude.
-    uncertainties : mapping of path to float
-        Standard uncertainties, SI.
-
-    Raises
-    ------
-    KinetostaticsError
-        As of `Solution.uncertainty`.
+    The band of a vector is that of its magnitude. `KinetostaticsError` as of `Solution.uncertainty`.
     """
     for name in names:
         vector = of_scene(solution)[name].vector

@@ -30,18 +30,10 @@ def motor_speed(session, state):
     if motor is None:
         raise ParameterError(f"explore: variant {state.get('variant', session.first)!r} has no drive")
     run = steady(session.scene(state), motor, flywheel, angles=COUNT)
-    values = np.array(run.motor_speed)
     factor, unit = shown_unit("rad/s")
+    shown = {"label": "motor speed", "unit": pretty_unit(unit), "factor": factor, "vector": False}
     return {
         "angle": np.degrees(run.crank_angle),
         "period": float(np.degrees(2.0 * np.pi * run.turns)),
-        "quantities": {
-            "motor speed": {
-                "label": "motor speed",
-                "unit": pretty_unit(unit),
-                "factor": factor,
-                "vector": False,
-                "values": values,
-            }
-        },
+        "quantities": {"motor speed": shown | {"values": np.array(run.motor_speed)}},
     }

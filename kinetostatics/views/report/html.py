@@ -223,13 +223,7 @@ RENDER_TIME = 20_000
 
 
 def browser():
-    """Path of a browser that prints without a window.
-
-    Raises
-    ------
-    MissingLibraryError
-        No browser is installed; the message lists suitable ones.
-    """
+    """Path of a browser that prints without a window; `MissingLibraryError` with suitable ones if none is installed."""
     found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     if found is None:
         raise MissingLibraryError(
@@ -240,13 +234,7 @@ def browser():
 
 
 def print_page(path, pdf):
-    """Print a page in a file to a PDF file.
-
-    Raises
-    ------
-    FileError
-        The browser ended without a PDF, or did not end.
-    """
+    """Print a page in a file to a PDF file; `FileError` if the browser does not end, or ends without a PDF."""
     found = browser()
     with tempfile.TemporaryDirectory(prefix="kinetostatics") as folder:
         made = Path(folder) / "page.pdf"

@@ -199,13 +199,13 @@ def test_the_scene_of_a_state_is_kept_for_the_last_ones(session):
     last = state(crank_length=0.3 + 1e-3 * (MAX_SCENES + 4))
     assert session.scene({"values": last["values"], "variant": "plain"}) is scenes[-1]
     assert session.scene(state(crank_length=0.3)) is not scenes[0]
-    assert len(session._scenes) == MAX_SCENES
+    assert session._scene.cache_info().currsize == MAX_SCENES
 
 
 def test_two_sessions_do_not_share_states():
     one, other = Session(CASE), Session(CASE)
     asked(one, state=state(crank_length=0.31))
-    assert not other._scenes
+    assert other._scene.cache_info().currsize == 0
     assert asked(other, state=PLAIN)["values"]["crank_length"] == 0.3
 
 
