@@ -156,8 +156,8 @@ def sensitivities(scene, text) -> Sensitivities:
     """Exact derivatives of an output by every number of a scene, also those that are zero.
 
     `text` names the output as for `ks.design.optimise`: "largest O", "mean_absolute balancing_torque".
-    `KinetostaticsError` if the output is unknown, has no finite value, or grows without bound or has no correct digit
-    somewhere; also if a load of the user's own does more than recorded arithmetic.
+    `KinetostaticsError` if the output is unknown or has no finite value, or if its quantity grows without bound or has
+    no correct digit somewhere. A load of the user's own must do nothing but recorded arithmetic.
     """
     output: Any = parse_output(text, scene)
     solution = scene.solve(COUNT)

@@ -223,7 +223,7 @@ RENDER_TIME = 20_000
 
 
 def browser():
-    """Path of a browser that prints without a window; `MissingLibraryError` with suitable ones if none is installed."""
+    """Path of a browser that prints without a window; `MissingLibraryError` without one, which lists suitable ones."""
     found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     if found is None:
         raise MissingLibraryError(
