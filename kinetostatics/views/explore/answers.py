@@ -1,4 +1,4 @@
-"""Numbers behind the curves of a scene: extremes, means, ratios to a reference, sensitivities, tolerance bands.
+"""Numbers behind the curves of a scene: extremes, means, ratios, sensitivities, tolerance bands, speed of its motor.
 
 The table comes row by row, so that a server can answer a drag between two rows.
 """
@@ -17,7 +17,8 @@ from ...cycle.rounding import MAX_LISTED, BoundedExtremes
 from ...design.constraints import parse_output
 from ...design.optimisation import ANGLES
 from ...design.problem import Problem
-from ...errors import DesignError, KinetostaticsError
+from ...drive.steady_running import steady
+from ...errors import DesignError, KinetostaticsError, ParameterError
 from ...mechanics.quantities import of_scene
 from ...numbers.formatting import angle, digits_of, number, pretty_unit
 from ...numbers.spreads import parse_spread
@@ -274,3 +275,34 @@ def ask_tolerances(session, request):
     names = [name for name in request.get("show", ()) if name in of_scene(solution)]
     for band in bands(solution, names, given) if given else ():
         yield {"band": band._asdict()}
+
+
+# Speed of the motor over the crank angle, for a case with a drive
+
+
+def motor_of(session, state):
+    """Motor of a variant and its flywheel, kg m2; None and 0.0 without a drive."""
+    variant = session.case.variants[state.get("variant", session.first)] if session.case else None
+    return (None, 0.0) if variant is None or variant.motor is None else (variant.motor, variant.flywheel)
+
+
+def running(session, request):
+    """Steady running of a state, then of the reference."""
+    for name in ("state", "reference"):
+        if (state := request.get(name)) is not None:
+            yield {"running": name} | motor_speed(session, state)
+
+
+def motor_speed(session, state):
+    """Speed of the motor in steady running, a curve as those of `look`, with its crank angles and period, degrees."""
+    motor, flywheel = motor_of(session, state)
+    if motor is None:
+        raise ParameterError(f"explore: variant {state.get('variant', session.first)!r} has no drive")
+    run = steady(session.scene(state), motor, flywheel, angles=COUNT)
+    factor, unit = shown_unit("rad/s")
+    shown = {"label": "motor speed", "unit": pretty_unit(unit), "factor": factor, "vector": False}
+    return {
+        "angle": np.degrees(run.crank_angle),
+        "period": float(np.degrees(2.0 * np.pi * run.turns)),
+        "quantities": {"motor speed": shown | {"values": np.array(run.motor_speed)}},
+    }

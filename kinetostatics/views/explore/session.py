@@ -24,7 +24,7 @@ from ...solution.scene import Scene
 from ..canvas import drawn_limit, ordinary_size, unit_for
 from ..movement import drawing_of, one_pose, turning_sense
 from ..report.tables import KINDS
-from . import answers, fields, groups, keeping, running, searching
+from . import answers, fields, groups, keeping, searching
 from .handles import Points
 
 MAX_SCENES = 32
@@ -239,7 +239,7 @@ def describe(session, request):
         for name, item in of_scene(scene).items()
         if item.kind in KINDS
     ]
-    drive = running.motor_of(session, request["state"])[0] is not None
+    drive = answers.motor_of(session, request["state"])[0] is not None
     return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
 
 
@@ -318,7 +318,7 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
-    "running": running.running,
+    "running": answers.running,
     "drag": drag,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,
