@@ -432,7 +432,7 @@ def panels(count, columns, width, height, more=0.0):
 
 DPI = 150
 """Dots per inch of figures in files."""
-WITHOUT_LAYOUT = {"figure.autolayout": False, "figure.constrained_layout.use": False}
+WITHOUT_LAYOUT: Any = {"figure.autolayout": False, "figure.constrained_layout.use": False}
 
 
 def save_figure(figure, path, salt=None, **options):

@@ -23,6 +23,7 @@ from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import drawn_limit, ordinary_size, unit_for
 from ..movement import drawing_of, one_pose, turning_sense
+from ..report.html import remarks
 from ..report.tables import KINDS
 from . import answers, fields, groups, keeping, searching
 from .handles import Points
@@ -79,8 +80,7 @@ class Session:
                 found = ANSWERS[request["kind"]](self, request)
             if isinstance(found, GeneratorType):
                 return self._parts(request, found)
-            notes = list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
-            return self._marked(request, {"notes": notes} | found)
+            return self._marked(request, {"notes": remarks(caught)} | found)
         except Exception as error:
             return self._marked(request, {"problem": problem_text(error)})
 

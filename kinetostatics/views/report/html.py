@@ -78,7 +78,7 @@ def page(subject, progress=lambda text: None):
 
 
 def remarks(caught):
-    """Texts of warnings during the report, each once."""
+    """Texts of the user's warnings, each once."""
     return list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
 
 
