@@ -13,7 +13,7 @@ from kinetostatics.mechanics.motion import Motion
 from kinetostatics.views import strokes
 from kinetostatics.views.canvas import ACCENT, INK, LOAD, STEEL
 from kinetostatics.views.drawings import LINES, PIVOT, PLATES
-from kinetostatics.views.sizing_springs import draw_spring
+from kinetostatics.views.sizing import draw_spring
 from kinetostatics.views.strokes import Shape
 
 FOLDER = Path(__file__).parent / "theory"

@@ -31,7 +31,6 @@ def animation(solution, joints=None, frames=72, interval=50, ax=None):
         unless the solution contains tables over its crank angles.
     interval : float
         Time between them, ms.
-    ax : Axes, optional
 
     Returns
     -------

@@ -5,6 +5,7 @@ of a drawing or the crank angle in degrees, keep their data; their ticks show th
 """
 
 import inspect
+import re
 from collections.abc import Mapping
 from functools import wraps
 from typing import Any
@@ -17,11 +18,13 @@ from ..numbers.formatting import heading, number, parse_heading
 from ..numbers.output_units import shown_in, shown_units
 from .canvas import panels
 
-UNITS_ENTRY = """units : dict of dimension to unit, optional
-    Units of values and axes, {"force": "kN"}, as for `in_units`.
-"""
-UNITS_SENTENCE = '`units`, {"force": "kN"}, chooses the units of values and axes, as for `in_units`.'
-"""What `with_units` adds to docstrings, those with a list of parameters and those without."""
+COMMON_ENTRIES = {
+    "solutions": "solutions : Solution or mapping of label to Solution",
+    "ax": "ax : Axes, optional",
+    "units": """units : dict of dimension to unit, optional
+    Units of values and axes, {"force": "kN"}, as for `in_units`.""",
+}
+"""Entries of parameters that `with_units` adds to docstrings, where these have none."""
 
 
 class ScaledLocator(AutoLocator):
@@ -55,7 +58,7 @@ def scale_axes(several):
 
 
 def with_units(plot):
-    """The plot with the option `units`."""
+    """The plot with the option `units`, and entries of all its parameters in its docstring."""
     own = inspect.signature(plot)
 
     @wraps(plot)
@@ -68,11 +71,19 @@ def with_units(plot):
 
     option = inspect.Parameter("units", inspect.Parameter.KEYWORD_ONLY, default=None)
     vars(drawn)["__signature__"] = own.replace(parameters=[*own.parameters.values(), option])
-    head, rule, rest = (inspect.getdoc(plot) or "").partition("Parameters\n----------\n")
-    listed, _, rest = rest.partition("\n\n")
-    text = f"{head}{rule}{listed}\n{UNITS_ENTRY}\n{rest}"
-    drawn.__doc__ = text if rule else head.replace("Examples\n", f"{UNITS_SENTENCE}\n\nExamples\n")
+    drawn.__doc__ = _with_entries(inspect.getdoc(plot) or "", [*own.parameters, "units"])
     return drawn
+
+
+def _with_entries(text, names):
+    """A docstring with common entries of those parameters that have none, in the order of names."""
+    heading = "\n\nParameters\n----------\n"
+    head, *more = re.split(heading if heading in text else r"\n\n(?=\w+\n---)", text, maxsplit=1)
+    listed, _, rest = "".join(more).partition("\n\n") if heading in text else ("", "", "".join(more))
+    entries = re.split(r"\n(?=\S)", listed) if listed else []
+    known = {name: entry for entry in entries for name in re.split(", *", re.split(" :|\n", entry)[0])}
+    entries = [known.get(name) or COMMON_ENTRIES[name] for name in names if name in known or name in COMMON_ENTRIES]
+    return "\n".join([head + heading.rstrip(), *dict.fromkeys(entries), "", rest])
 
 
 def one_panel_each(width, height, columns=1, pad=6.0):

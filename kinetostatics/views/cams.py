@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 from ..numbers import checks
 from ..numbers.output_units import shown_units
 from .axis_units import one_panel_each, with_units
-from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, with_line_styles
+from .canvas import ACCENT, FROM_X, INK, LOAD, STEEL, axes, close_curve, several_axes, with_line_styles
 from .labels import label
 
 POINTS_PER_TURN = 1440
@@ -36,12 +36,6 @@ def cam_profile(cam, roller_radius=None, side="disk", angles=(0, 120, 240), cutt
         Crank angles at which the roller is drawn, degrees.
     cutter_radius : float, optional
         m.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
 
     Examples
     --------
@@ -90,7 +84,6 @@ def cam_curvature(cams, roller_radius=None, side="disk", ax=None):
     roller_radius : float, optional
         m; a line shows the curvature from which the cam is undercut.
     side : "disk" or "ring"
-    ax : Axes, optional
 
     Examples
     --------
@@ -121,7 +114,6 @@ def cam_pressure_angle(cams, largest=None, ax=None):
     cams : Cam or mapping of label to Cam
     largest : float, optional
         A limit, rad, drawn on both sides of 0.
-    ax : Axes, optional
 
     Examples
     --------
@@ -150,7 +142,6 @@ def contact_pressure(contacts, ax=None):
     ----------
     contacts : Contact, FollowerContact or mapping of label to one
         From ``ks.design.contact``.
-    ax : Axes, optional
 
     Examples
     --------
@@ -205,15 +196,10 @@ def law_motion(laws, ax=None):
     >>> len(ks.plots.law_motion(ks.laws.joined(rise, back)))
     4
     """
-    import matplotlib.pyplot as plt
-
     named = _items_by_label(
         laws, "law_motion", lambda law: None if callable(law) else f"must be a law, got {checks.shown(law)}"
     )
-    checks.require(
-        "law_motion", None if ax is None or len(np.ravel(ax)) == 4 else f"ax must be 4 Axes, got {checks.shown(ax)}"
-    )
-    four: Any = plt.subplots(4, 1, sharex=True, layout="constrained", figsize=(6.4, 7.2))[1] if ax is None else ax
+    four: Any = several_axes("law_motion", ax, 4, 1, (6.4, 7.2), sharex=True)
     factor, unit = shown_units().of("m")
     for order, part in enumerate(four):
         draw_each_over_turn(part, named, lambda law, angle, at=order: factor * law(angle)[at], 2 * POINTS_PER_TURN)

@@ -64,6 +64,23 @@ def axes(ax):
     return plt.subplots(layout="constrained")[1]
 
 
+def several_axes(owner, ax, rows, columns, size, **options):
+    """The given axes, or those in rows and columns of a new figure of a size in inches."""
+    count = rows * columns
+    few = None if ax is None or len(np.ravel(ax)) == count else f"ax must be {count} Axes, got {checks.shown(ax)}"
+    checks.require(owner, few)
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(rows, columns, layout="constrained", figsize=size, **options)[1]
+
+
+def require_kind(owner, item, kind, wanted):
+    """Raise an error unless an item is of a class; it begins with the sentence `wanted`."""
+    checks.require(owner, None if isinstance(item, kind) else f"{wanted}, got {checks.shown(item)}")
+
+
 def solutions_by_label(solutions, name):
     """Solutions by label; a single solution has the label of the quantity."""
     checks.require("plots", checks.quantity(name))
@@ -300,15 +317,9 @@ def set_equal_scales(ax, moving=()):
 def with_peaks(named, *quantities):
     """Solutions by label with added crank angles: extremes of quantities, and kinks of tables and friction.
 
-    All solutions get the angles of all, so coincident curves remain so. A solution is unchanged if nothing is
-    known between its crank angles, or these do not rise.
-
-    Parameters
-    ----------
-    named : mapping of label to Solution
-        Each of one design.
-    quantities : str or function
-        As for `extremes`; vectors by their magnitude.
+    Each solution is of one design; quantities are as for `extremes`, vectors by their magnitude. All get the angles of
+    all, so coincident curves remain so. A solution is unchanged if nothing is known between its crank angles, or these
+    do not rise.
     """
     known = {name: solution for name, solution in named.items() if _is_known_between(solution)}
     more = [np.empty(0)]
@@ -421,6 +432,7 @@ def panels(count, columns, width, height, more=0.0):
 
 DPI = 150
 """Dots per inch of figures in files."""
+WITHOUT_LAYOUT: Any = {"figure.autolayout": False, "figure.constrained_layout.use": False}
 
 
 def save_figure(figure, path, salt=None, **options):
@@ -428,12 +440,12 @@ def save_figure(figure, path, salt=None, **options):
     import matplotlib.pyplot as plt
 
     kind = Path(path).suffix[1:] or "png"
-    with plt.rc_context({"svg.hashsalt": salt}), write_atomically(path) as temporary:
+    with plt.rc_context({"svg.hashsalt": salt} | WITHOUT_LAYOUT), write_atomically(path) as temporary:
         metadata = {"Date": None} if kind == "svg" else {}
-        if engine := figure.get_layout_engine():  # once; `savefig` would draw the figure for it, and again
+        if engine := figure.get_layout_engine():  # once; with an engine, even "none", `savefig` draws a figure twice
             figure.set_dpi(DPI)
             engine.execute(figure)
-            figure.set_layout_engine("none")
+            figure.set_layout_engine(None)
         figure.savefig(temporary, format=kind, dpi=DPI, metadata=metadata, **options)
     plt.close(figure)
     return Path(path)

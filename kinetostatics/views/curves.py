@@ -35,12 +35,10 @@ def chain_unit_motion(solutions, link, order=1, ax=None):
 
     Parameters
     ----------
-    solutions : Solution or mapping of label to Solution
     link : "coupler" or "rocker"
         Link of the four-bar, for any name of the link.
     order : 1 or 2
         Velocity or acceleration.
-    ax : Axes, optional
 
     Examples
     --------
@@ -77,7 +75,6 @@ def shaking_force(solutions, by="direction", ax=None):
 
     Parameters
     ----------
-    solutions : Solution or mapping of label to Solution
     by : "direction" or "crank angle"
         Meaning of the polar angle.
     ax : polar Axes, optional
@@ -127,10 +124,8 @@ def over_turn(solutions, quantity, ax=None, counted=FROM_X):
 
     Parameters
     ----------
-    solutions : Solution or mapping of label to Solution
     quantity : str
         As for `extremes`; of a reaction or a vector the magnitude is drawn.
-    ax : matplotlib Axes, optional
     counted : AngleConvention, optional
         Convention for crank angles; by default from +x, counter-clockwise.
 
@@ -214,7 +209,6 @@ def acceleration_error(solutions, ax=None, slider=None):
     ----------
     solutions : Solution or mapping of label to Solution
         With a slider.
-    ax : Axes, optional
     slider : str, optional
 
     Examples

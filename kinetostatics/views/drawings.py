@@ -87,14 +87,8 @@ def mechanism(solutions, angles=(40, 160, 280), ax=None, counted=FROM_X):
         Several machines must have the same motion: the first is drawn, with the counterweights and loads of each.
     angles : sequence of float
         Crank angles, degrees; the first is drawn strongest.
-    ax : Axes, optional
     counted : AngleConvention
         Convention for the labels of crank angles; `angles` are from +x.
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
 
     Examples
     --------

@@ -31,7 +31,6 @@ def crank_speed(runs, ax=None):
     ----------
     runs : Running or mapping of label to Running
         As of `ks.drive.steady`.
-    ax : Axes, optional
 
     Examples
     --------
@@ -61,7 +60,6 @@ def drive_torques(run, ax=None):
     ----------
     run : Running or mapping of label to Running
         As of `ks.drive.steady`; several get a panel each.
-    ax : Axes, optional
 
     Examples
     --------
@@ -96,7 +94,6 @@ def energy_flow(runs, ax=None):
     ----------
     runs : Running or mapping of label to Running
         As of `ks.drive.steady`.
-    ax : Axes, optional
 
     Examples
     --------
@@ -169,7 +166,6 @@ def lost_power(solution, ax=None):
     ----------
     solution : Solution or mapping of label to Solution
         With friction, a damper or drag; of one design. Several get a panel each.
-    ax : Axes, optional
 
     Examples
     --------
@@ -202,7 +198,6 @@ def losses(solutions, ax=None):
     ----------
     solutions : Solution or mapping of label to Solution
         With friction, dampers or drag.
-    ax : Axes, optional
 
     Examples
     --------

@@ -7,6 +7,7 @@ import textwrap
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -52,27 +53,11 @@ FONT: Any = {"font.size": 9}
 
 
 def draw_case(case, folder, file_format="png", only=None, progress=iter):
-    """Draw the figures of a case into a folder, each of the variants compared with one reference.
+    """Draw the figures of a case into a folder, each of the variants compared with one reference; returns the paths.
 
-    Parameters
-    ----------
-    case : Case
-    folder : path
-        Created if missing; each file is written whole or not at all.
-    file_format : "png" or "svg"
-    only : str, optional
-        Name of a single figure.
-    progress : function, optional
-        Iterates over the names of the figures while they are drawn.
-
-    Returns
-    -------
-    list of Path
-
-    Raises
-    ------
-    ParameterError
-        The figure is unknown; the message lists the names. Or the files cannot be written.
+    `only` names a single figure, `progress` iterates over the names of the figures while they are drawn. The folder is
+    created if missing; each file, "png" or "svg", is written whole or not at all. `ParameterError` if the figure is
+    unknown, with the known names, or if the files cannot be written.
     """
     checks.require("figures", checks.case("case", case))
     figures = figures_of(case)
@@ -187,10 +172,15 @@ def _one_each(plot, solutions, width=4.4, height=4.2, columns=3) -> Figure:
     return figure
 
 
+PROPORTIONS: WeakKeyDictionary[Any, float] = WeakKeyDictionary()
+
+
 def _proportion(solution):
     """Width of the drawing of a mechanism over its height."""
-    size = drawings.mechanism(solution, ax=Figure().subplots()).dataLim
-    return float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
+    if solution not in PROPORTIONS:
+        size = drawings.mechanism(solution, ax=Figure().subplots()).dataLim
+        PROPORTIONS[solution] = float(np.clip(size.width / size.height, 0.4, 4.0)) if size.height > 0 else 4.0
+    return PROPORTIONS[solution]
 
 
 def _mechanisms(solutions, counted=FROM_X) -> Figure:
@@ -293,7 +283,6 @@ def front(found, ax=None):
     Parameters
     ----------
     found : design.Front
-    ax : matplotlib Axes, optional
 
     Examples
     --------

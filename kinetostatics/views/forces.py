@@ -37,7 +37,6 @@ def shares(solution, quantity, ax=None):
         Of one design. Several get a panel each.
     quantity : str
         As for `Solution.shares`: "O", "balancing_torque" ...
-    ax : Axes, optional
 
     Raises
     ------
@@ -118,12 +117,6 @@ def free_body(solution, link, angle, ax=None):
         "crank", "coupler", "slider" ...
     angle : float
         Crank angle, degrees; it need not be one of those solved.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
 
     Raises
     ------

@@ -46,22 +46,15 @@ def hodograph(solutions, joint="O", ax=None, marks=30, counted=FROM_X, on=None):
 
     Parameters
     ----------
-    solutions : Solution or mapping of label to Solution
     joint : str
         Joint, for its reaction; or the vector attribute "shaking_force". For a force on the frame, a place of
         `Solution.ground`, "cam", "spring" ...; for a joint "ground O".
-    ax : Axes, optional
     marks : float
         Step of the crank-angle marks, degrees; a mark appears if the solution has that angle, to half a degree.
     counted : AngleConvention, optional
         Convention for the marks; by default from +x, counter-clockwise.
     on : str, optional
         Link in whose axes the force is drawn, along the link and across it, to the left; by default fixed axes.
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
 
     Raises
     ------
@@ -103,10 +96,6 @@ def rocking_moment(solutions, ax=None, marks=30, counted=FROM_X):
         Of machines with planes along the crankshaft.
     ax, marks, counted
         As for `hodograph`.
-
-    Returns
-    -------
-    Axes
 
     Examples
     --------

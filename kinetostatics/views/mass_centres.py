@@ -41,12 +41,6 @@ def mass_centres(solutions, angle=60, ax=None):
         Mechanisms of one geometry, with different masses; the first is drawn.
     angle : float
         Crank angle of the drawing, degrees, marked on every path.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
 
     Examples
     --------
@@ -92,12 +86,6 @@ def principal_points(mechanism, angle=60, before=None, ax=None):
         Crank angle of the drawing, degrees.
     before : Mechanism, optional
         The same mechanism with other masses.
-    ax : Axes, optional
-
-    Returns
-    -------
-    Axes
-        With equal scales on both axes.
 
     Raises
     ------

@@ -2,8 +2,9 @@
 
 Every function draws on `ax` (new axes by default) and returns these Axes, unless it names another result. `solutions`
 is one `Solution` or a mapping of label to `Solution`. Where a figure shows one machine only, a mapping gets a panel for
-each, and the result is a list of Axes. ``units={"force": "kN", "length": "mm"}`` chooses units, as of `in_units`. A
-quantity that the mechanism lacks raises `QuantityError`, a batch of designs `ParameterError`.
+each, and the result is a list of Axes. Drawings, hodographs and cams have equal scales on both axes.
+``units={"force": "kN", "length": "mm"}`` chooses units, as of `in_units`. A quantity that the mechanism lacks raises
+`QuantityError`, a batch of designs `ParameterError`.
 """
 
 from .animations import animation
@@ -16,11 +17,7 @@ from .figures import before_and_after, front
 from .forces import free_body, shares
 from .hodographs import hodograph, hodographs, rocking_moment
 from .mass_centres import mass_centres, principal_points
-from .sizing_bearings import bearing
-from .sizing_mount import mount
-from .sizing_play import contact_loss
-from .sizing_sections import sections
-from .sizing_springs import helical_spring
+from .sizing import bearing, contact_loss, helical_spring, mount, sections
 from .sketches import sketch
 
 __all__ = [

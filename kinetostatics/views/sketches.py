@@ -61,7 +61,6 @@ def sketch(machine, dimensions=True, angle=None, ax=None):
         Whether to show dimensions.
     angle : float, optional
         Crank angle, degrees, from +x, counter-clockwise; by default one at which joints and links lie well apart.
-    ax : Axes, optional
 
     Returns
     -------

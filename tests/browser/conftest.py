@@ -4,6 +4,7 @@ import importlib.util
 import os
 import shutil
 from contextlib import ExitStack
+from functools import cache
 
 import pytest
 
@@ -43,10 +44,11 @@ def driver(request):
     found.quit()
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def explored(driver):
-    """Opens explore pages, each of a server of its own: `explored("pumpjack", "--variant", "weights")`."""
+    """Opens explore pages: `explored("pumpjack", "--variant", "weights")`; those of the same options share a server."""
     from support.explored import ExplorePage, explore_server
 
     with ExitStack() as servers:
-        yield lambda *options, fields="": ExplorePage(driver, servers.enter_context(explore_server(*options)), fields)
+        address = cache(lambda *options: servers.enter_context(explore_server(*options)))
+        yield lambda *options, fields="": ExplorePage(driver, address(*options), fields)

@@ -12,23 +12,17 @@ pytest.importorskip("tornado")
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.keys import Keys
 
-from support.explored import ExplorePage, explore_server
+from support.explored import ExplorePage
 
 pytestmark = pytest.mark.slow
 CASE, VARIANT = "sawframe_2r63", "cam-cosine"
 TORQUE = "balancing_torque"
 
 
-@pytest.fixture(scope="module")
-def address():
-    with explore_server(CASE, "--variant", VARIANT) as found:
-        yield found
-
-
 @pytest.fixture
-def page(driver, address):
+def page(explored):
     """The page of the saw, opened anew."""
-    found = ExplorePage(driver, address)
+    found = explored(CASE, "--variant", VARIANT)
     found.settled()
     return found
 
@@ -184,7 +178,7 @@ def test_values_at_the_crank_angle_are_of_the_curves(page):
     assert shown == pytest.approx(factor * scene(slider__mass=700.0).solve(360).balancing_torque[40], rel=1e-3)
 
 
-def test_link_reopens_all_that_was_shown(page, driver, address):
+def test_link_reopens_all_that_was_shown(page, driver):
     page.slide("slider.mass", 700)
     page.button("Compare with now").click()
     page.script("page.curves.choose('guide_force', true); page.curves.turn('O'); page.clock.choose(77)")
@@ -273,9 +267,9 @@ def test_frame_and_scale_of_forces_stay_while_a_slider_moves(page):
     assert page.script(frame) == [box, scale]
 
 
-def test_link_to_a_machine_that_cannot_be_assembled_opens(driver, address):
-    link = address + "&state=" + quote('{"variant": "plain", "values": {"coupler_length": 0.25}}')
-    page = ExplorePage(driver, link)
+def test_link_to_a_machine_that_cannot_be_assembled_opens(explored):
+    state = quote('{"variant": "plain", "values": {"coupler_length": 0.25}}')
+    page = explored(CASE, "--variant", VARIANT, fields=f"&state={state}")
     assert "cannot be assembled" in page.find(".problem").text
     page.write("coupler_length", "1.5")
     assert_shows(page, scene("plain", coupler_length=1.5))

@@ -8,22 +8,16 @@ from kinetostatics.views.explore.session import Session
 
 pytestmark = pytest.mark.slow
 webdriver = pytest.importorskip("selenium.webdriver")
-explored = pytest.importorskip("support.explored")
+pytest.importorskip("support.explored")
 CASES = {"four-bar": ("cases/pumpjack.toml",), "slider": ("cases/sawframe_2r63.toml", "--variant", "plain")}
 
 
-@pytest.fixture(scope="module")
-def addresses():
-    with explored.explore_server(*CASES["four-bar"]) as first, explored.explore_server(*CASES["slider"]) as second:
-        yield {"four-bar": first, "slider": second}
-
-
 @pytest.fixture
-def opened(driver, addresses):
+def opened(driver, explored):
     driver.set_window_size(1400, 1000)
 
     def open_page(name):
-        page = explored.ExplorePage(driver, addresses[name])
+        page = explored(*CASES[name])
         page.settled()
         return page
 

@@ -4,6 +4,7 @@ import json
 import re
 import time
 import warnings
+from contextlib import contextmanager
 from io import BytesIO
 
 import numpy as np
@@ -62,10 +63,8 @@ def angle(driver):
 
 
 def choose(driver, degrees):
-    script = (
-        "const x = document.querySelector('input.angle'); x.value = arguments[0]; x.dispatchEvent(new Event('input'))"
-    )
-    driver.execute_script(script, degrees)
+    script = "x.value = arguments[0]; x.dispatchEvent(new Event('input'))"
+    driver.execute_script(f"const x = document.querySelector('input.angle'); {script}", degrees)
     assert angle(driver) == degrees
 
 
@@ -337,24 +336,28 @@ def test_a_figure_chooses_the_angle_and_reads_its_curves(page):
         assert torque.min() <= float(re.fullmatch(rf"{name}: (\S+) kN·m", line)[1]) <= torque.max()
 
 
-def test_it_is_as_wide_as_a_phone(page):
-    driver, _ = page
+@contextmanager
+def on_phone(driver):
+    """The page as a phone shows it, to the end of the block."""
     size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
         time.sleep(0.3)
-        assert driver.execute_script("return document.documentElement.scrollWidth") <= 400
-        assert driver.execute_script("return document.body.report.drawings[0].svg.viewBox.baseVal.width") < 400
+        yield
     finally:
         driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
+def test_it_is_as_wide_as_a_phone(page):
+    driver, _ = page
+    with on_phone(driver):
+        assert driver.execute_script("return document.documentElement.scrollWidth") <= 400
+        assert driver.execute_script("return document.body.report.drawings[0].svg.viewBox.baseVal.width") < 400
+
+
 def test_a_wide_table_on_a_phone_shows_it_goes_on_and_keeps_the_names_of_its_rows(page):
     driver, _ = page
-    size = {"width": 400, "height": 800, "deviceScaleFactor": 1, "mobile": True}
-    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-    try:
-        time.sleep(0.3)
+    with on_phone(driver):
         wide = driver.find_element(By.CSS_SELECTOR, "#glance .scroll")
         driver.execute_script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", wide)
         assert driver.execute_script("return arguments[0].scrollWidth > arguments[0].clientWidth", wide)
@@ -372,8 +375,6 @@ def test_a_wide_table_on_a_phone_shows_it_goes_on_and_keeps_the_names_of_its_row
         places = "return [...arguments].map((item) => item.getBoundingClientRect().left)"
         assert np.ptp(driver.execute_script(places, wide, name)) < 1.0
         assert driver.find_element(By.CSS_SELECTOR, "select.pace").is_displayed()
-    finally:
-        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
 
 def test_on_paper_every_figure_stands_as_lines(page):
@@ -387,9 +388,8 @@ def test_on_paper_every_figure_stands_as_lines(page):
         assert (sizes[:, :2] > 100).all()
         assert sizes[:, 2].sum() > 15
         driver.execute_script("window.dispatchEvent(new Event('beforeprint'))")
-        assert driver.execute_script(
-            "return [...document.querySelectorAll('[data-printed]')].every((part) => part.open)"
-        )
+        printed = "return [...document.querySelectorAll('[data-printed]')].every((part) => part.open)"
+        assert driver.execute_script(printed)
     finally:
         driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
 

@@ -1,7 +1,6 @@
 """Texts of a figure that lie on each other."""
 
-from itertools import combinations
-
+import numpy as np
 from matplotlib.text import Text
 
 SLACK = 1.0
@@ -10,21 +9,18 @@ SLACK = 1.0
 
 def overlaps(figure):
     """Pairs of texts whose boxes overlap in a drawn figure, without slanted ones."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     renderer = figure.canvas.get_renderer()
     away = {text for ax in figure.axes if ax.name != "polar" for text in _out_of_sight(ax, renderer)}
-    shown = [item for item in figure.findobj(Text) if item.get_visible() and item.get_text().strip()]
-    boxes = [
-        (item.get_text(), item.get_window_extent(renderer))
-        for item in shown
-        if item not in away and item.get_rotation() % 90.0 == 0.0
+    shown = [
+        item
+        for item in figure.findobj(Text)
+        if item.get_visible() and item.get_text().strip() and item not in away and item.get_rotation() % 90.0 == 0.0
     ]
-    return [(one, two) for (one, box), (two, other) in combinations(boxes, 2) if _overlap(box, other)]
-
-
-def _overlap(box, other):
-    width = min(box.x1, other.x1) - max(box.x0, other.x0)
-    return width > SLACK and min(box.y1, other.y1) - max(box.y0, other.y0) > SLACK
+    boxes = np.array([item.get_window_extent(renderer).extents for item in shown])
+    shared = np.minimum(boxes[:, None, 2:], boxes[:, 2:]) - np.maximum(boxes[:, None, :2], boxes[:, :2])
+    pairs = np.argwhere(np.triu((shared > SLACK).all(axis=-1), 1))
+    return [(shown[one].get_text(), shown[two].get_text()) for one, two in pairs]
 
 
 def _out_of_sight(ax, renderer):

@@ -18,14 +18,16 @@ PUMP = ks.solve(ks.crank_slider(0.1, 0.5), TURN, crank_speed=1.0)
 
 @pytest.mark.parametrize(
     ("unit", "largest", "expected"),
-    [("N", 9e3, (1.0, "N")), ("N", -2e4, (1e-3, "kN")), ("N m", 1e4, (1e-3, "kN m")), ("m", 1e5, (1.0, "m"))],
+    [
+        ("N", 9e3, (1.0, "N")),
+        ("N", -2e4, (1e-3, "kN")),
+        ("N m", 1e4, (1e-3, "kN m")),
+        ("m", 1e5, (1.0, "m")),
+        ("rad", 1.0, (180 / np.pi, "deg")),
+    ],
 )
-def test_large_forces_read_in_kilonewtons(unit, largest, expected):
+def test_large_forces_read_in_kilonewtons_and_angles_in_degrees(unit, largest, expected):
     assert canvas.display_unit(unit, [np.array([0.0, np.nan, largest])]) == expected
-
-
-def test_angles_read_in_degrees():
-    assert canvas.display_unit("rad", [np.ones(1)]) == (180 / np.pi, "deg")
 
 
 def test_axes_given_are_those_drawn_on():
@@ -57,13 +59,8 @@ def test_missing_columns_and_rows_are_named():
 
 def test_equal_curves_share_a_label():
     turn = np.linspace(0, 6, 50)
-    curves = {
-        "a": np.sin(turn),
-        "b": np.sin(turn) + 1e-4,
-        "c": np.sin(turn) + 1e-2,
-        "rounding": 1e-15 * np.cos(turn),
-        "short": np.sin(turn[:9]),
-    }
+    curves = {name: np.sin(turn) + more for name, more in (("a", 0.0), ("b", 1e-4), ("c", 1e-2))}
+    curves |= {"rounding": 1e-15 * np.cos(turn), "short": np.sin(turn[:9])}
     assert canvas.distinct_curves(curves) == {"a, b": "a", "c": "c", "rounding (0)": "rounding", "short": "short"}
 
 
@@ -146,14 +143,11 @@ def test_legend_stands_above_the_curves(width, columns):
 
 
 def test_every_figure_function_has_an_example():
+    assert dir(ks.plots) == sorted(ks.plots.__all__)
     figures = {name: getattr(ks.plots, name) for name in ks.plots.__all__}
     assert all(">>>" in inspect.getdoc(figure) for figure in figures.values())
     without_axes = {name for name, figure in figures.items() if "ax" not in inspect.signature(figure).parameters}
     assert without_axes == {"bearing", "before_and_after", "hodographs", "mount"}
-
-
-def test_only_figures_are_listed():
-    assert dir(ks.plots) == sorted(ks.plots.__all__)
 
 
 # Gaps of solutions in figures

@@ -44,23 +44,17 @@ def contact(solution):
     return ks.design.contact(solution, 0.02, 0.03, 210e9, 0.3)
 
 
-MACHINE = {
-    "acceleration_error": lambda s, **how: ks.plots.acceleration_error(s, **how),
-    "cam_force": lambda s, **how: ks.plots.cam_force(s, **how),
+ALONE = (
+    "acceleration_error cam_force hodographs losses lost_power mass_centres mechanism pressure_angle "
+    "principal_points shaking_force torque"
+)
+"""Plots that need nothing but a solution."""
+MACHINE = {name: getattr(ks.plots, name) for name in ALONE.split()} | {
     "contact_pressure": lambda s, **how: ks.plots.contact_pressure(each(contact, s), **how),
     "free_body": lambda s, **how: ks.plots.free_body(s, "coupler", 60, **how),
     "hodograph": lambda s, **how: ks.plots.hodograph(s, "O", **how),
-    "hodographs": lambda s, **how: ks.plots.hodographs(s, **how),
-    "losses": lambda s, **how: ks.plots.losses(s, **how),
-    "lost_power": lambda s, **how: ks.plots.lost_power(s, **how),
-    "mass_centres": lambda s, **how: ks.plots.mass_centres(s, **how),
-    "mechanism": lambda s, **how: ks.plots.mechanism(s, **how),
     "over_turn": lambda s, **how: ks.plots.over_turn(s, "slider_position", **how),
-    "pressure_angle": lambda s, **how: ks.plots.pressure_angle(s, **how),
-    "principal_points": lambda s, **how: ks.plots.principal_points(s, **how),
-    "shaking_force": lambda s, **how: ks.plots.shaking_force(s, **how),
     "shares": lambda s, **how: ks.plots.shares(s, "O", **how),
-    "torque": lambda s, **how: ks.plots.torque(s, **how),
 }
 """Plots of a solution."""
 OTHERS = {

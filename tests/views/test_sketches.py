@@ -19,14 +19,8 @@ from support.every import every
 from support.turning_machines import KINDS, random_machine
 
 LENGTHS = {"m": ("mm", 1e3), "rad": ("°", 180.0 / np.pi)}
-PUMP = ks.crank_slider(
-    0.05,
-    0.2,
-    guide=ks.Guide.at(0.3, 0.03),
-    crank=ks.Link(4.0, -0.012),
-    coupler=ks.Link(1.0, (0.06, 0.012)),
-    slider=ks.Link(1.2),
-)
+LINKS = {"crank": ks.Link(4.0, -0.012), "coupler": ks.Link(1.0, (0.06, 0.012)), "slider": ks.Link(1.2)}
+PUMP = ks.crank_slider(0.05, 0.2, guide=ks.Guide.at(0.3, 0.03), **LINKS)
 CRANK_ANGLE = "crank angle"
 
 
@@ -35,9 +29,8 @@ def numbers_of(ax):
     text = "\n".join(text.get_text() for text in ax.texts)
     text = re.sub(r"(\S+)\.centre = \((\S+), (\S+)\) mm", r"\1.centre.along = \2 mm\n\1.centre.across = \3 mm", text)
     text = re.sub(r"\.centre = ", ".centre.along = ", text)
-    return [
-        re.fullmatch(r"(.+) = (\S+?) ?(mm|°|kg)", line).groups() for line in re.split(",   |\n", text) if "=" in line
-    ]
+    lines = [line for line in re.split(",   |\n", text) if "=" in line]
+    return [re.fullmatch(r"(.+) = (\S+?) ?(mm|°|kg)", line).groups() for line in lines]
 
 
 def overlapping(ax):

@@ -1,4 +1,4 @@
-"""Numbers behind the curves of a scene: extremes, means, ratios to a reference, sensitivities, tolerance bands.
+"""Numbers behind the curves of a scene: extremes, means, ratios, sensitivities, tolerance bands, speed of its motor.
 
 The table comes row by row, so that a server can answer a drag between two rows.
 """
@@ -17,7 +17,8 @@ from ...cycle.rounding import MAX_LISTED, BoundedExtremes
 from ...design.constraints import parse_output
 from ...design.optimisation import ANGLES
 from ...design.problem import Problem
-from ...errors import DesignError, KinetostaticsError
+from ...drive.steady_running import steady
+from ...errors import DesignError, KinetostaticsError, ParameterError
 from ...mechanics.quantities import of_scene
 from ...numbers.formatting import angle, digits_of, number, pretty_unit
 from ...numbers.spreads import parse_spread
@@ -134,15 +135,9 @@ def _mean(label, solution):
 
 
 class Sensitivity(NamedTuple):
-    """Derivative of an output by the number at a path.
+    """Derivative `slope` of an output by the number at a path, in the unit of the output over that of the number.
 
-    Attributes
-    ----------
-    path : str
-    slope : float
-        In the unit of the output over that of the number.
-    share : float
-        Change of the output in percent, for one percent of the number; NaN where either is zero.
+    `share` is the change of the output in percent for one percent of the number; NaN where either is zero.
     """
 
     path: str
@@ -161,31 +156,9 @@ class Sensitivities(NamedTuple):
 def sensitivities(scene, text) -> Sensitivities:
     """Exact derivatives of an output by every number of a scene, also those that are zero.
 
-    Parameters
-    ----------
-    scene : Scene
-    text : str
-        As for `ks.design.optimise`: "largest O", "mean_absolute balancing_torque".
-
-    Raises
-    ------
-    ParameterError, QuantityError
-        The output is unknown.
-    NotGivenError
-        A load or cam of the user's own does more than recorded arithmetic.
-    DesignError
-        The output has no finite value; or its quantity grows without bound, or has no correct digit somewhere.
-    KinetostaticsError
-        As of `Scene.solve`.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> from kinetostatics.views.explore.answers import sensitivities
-    >>> scene = ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5)
-    >>> found = sensitivities(scene, "largest_absolute balancing_torque")
-    >>> [(row.path, round(row.share, 3)) for row in found.rows[:4]]
-    [('crank_length', 2.147), ('crank_speed', 2.0), ('slider.mass', 1.0), ('coupler_length', -0.147)]
+    `text` names the output as for `ks.design.optimise`: "largest O", "mean_absolute balancing_torque".
+    `KinetostaticsError` if the output is unknown or has no finite value, or if its quantity grows without bound or has
+    no correct digit somewhere. A load of the user's own must do nothing but recorded arithmetic.
     """
     output: Any = parse_output(text, scene)
     solution = scene.solve(COUNT)
@@ -216,20 +189,9 @@ class Band(NamedTuple):
 
 
 def bands(solution, names, uncertainties) -> Iterator[Band]:
-    """First-order bands of `COVERAGE` standard uncertainties around curves, one a step.
+    """First-order bands of `COVERAGE` standard uncertainties, SI by path, around curves, one a step.
 
-    Parameters
-    ----------
-    solution : Solution
-    names : sequence of str
-        Quantities; the band of a vector is that of its magnitude.
-    uncertainties : mapping of path to float
-        Standard uncertainties, SI.
-
-    Raises
-    ------
-    KinetostaticsError
-        As of `Solution.uncertainty`.
+    The band of a vector is that of its magnitude. `KinetostaticsError` as of `Solution.uncertainty`.
     """
     for name in names:
         vector = of_scene(solution)[name].vector
@@ -313,3 +275,34 @@ def ask_tolerances(session, request):
     names = [name for name in request.get("show", ()) if name in of_scene(solution)]
     for band in bands(solution, names, given) if given else ():
         yield {"band": band._asdict()}
+
+
+# Speed of the motor over the crank angle, for a case with a drive
+
+
+def motor_of(session, state):
+    """Motor of a variant and its flywheel, kg m2; None and 0.0 without a drive."""
+    variant = session.case.variants[state.get("variant", session.first)] if session.case else None
+    return (None, 0.0) if variant is None or variant.motor is None else (variant.motor, variant.flywheel)
+
+
+def running(session, request):
+    """Steady running of a state, then of the reference."""
+    for name in ("state", "reference"):
+        if (state := request.get(name)) is not None:
+            yield {"running": name} | motor_speed(session, state)
+
+
+def motor_speed(session, state):
+    """Speed of the motor in steady running, a curve as those of `look`, with its crank angles and period, degrees."""
+    motor, flywheel = motor_of(session, state)
+    if motor is None:
+        raise ParameterError(f"explore: variant {state.get('variant', session.first)!r} has no drive")
+    run = steady(session.scene(state), motor, flywheel, angles=COUNT)
+    factor, unit = shown_unit("rad/s")
+    shown = {"label": "motor speed", "unit": pretty_unit(unit), "factor": factor, "vector": False}
+    return {
+        "angle": np.degrees(run.crank_angle),
+        "period": float(np.degrees(2.0 * np.pi * run.turns)),
+        "quantities": {"motor speed": shown | {"values": np.array(run.motor_speed)}},
+    }

@@ -13,11 +13,7 @@ PAUSE = 0.05
 class Conversation:
     """Answers each request of a page; numbers of an older state are dropped when a newer one is asked for.
 
-    Parameters
-    ----------
-    session : Session
-    send : function
-        Called with the header and the buffers of each answer, as `packed` gives them.
+    `send` is called with the header and the buffers of each answer, as `packed` gives them.
     """
 
     def __init__(self, session, send):

@@ -73,14 +73,7 @@ class Chain(NamedTuple):
 
 
 def template(kind):
-    """Table of the first variant of a starter case, as a chain.
-
-    Examples
-    --------
-    >>> from kinetostatics.views.explore.groups import scene_of, template
-    >>> [group["kind"] for group in template("cam")["groups"]], scene_of(template("four-bar")).crank_speed
-    (['cam roller', 'slider'], 6.283185307179586)
-    """
+    """Table of the first variant of a starter case, as a chain."""
     checks.require("explore", checks.choice("kind", kind, STARTERS))
     raw = tomllib.loads(starter(kind, kind))
     return as_chain(inherit(raw["common"], next(iter(raw["variants"].values()))))

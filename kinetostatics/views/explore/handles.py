@@ -41,24 +41,11 @@ DIAGONAL = -math.sqrt(0.5), math.sqrt(0.5)
 
 
 class Handle(NamedTuple):
-    """A point that can be dragged.
+    """A point that can be dragged, named by the first of the `paths` of the numbers that it changes; `label` in words.
 
-    Attributes
-    ----------
-    name : str
-        Its first path.
-    label : str
-        In words, "mass centre of the coupler".
-    kind : "joint", "point", "mass", "guide" or "turn"
-        Joints change lengths, points are coordinates, "turn" changes an angle.
-    paths : tuple of str
-        Numbers that it changes.
-    position : array (2, N)
-        m, in each pose; NaN in a gap.
-    measure : function of a place (x, y) and the index of a pose
-        Numbers that bring the point there, or as near as its line allows.
-    row : int
-        Number of earlier points, and pins of the crank, at nearly the same place in all poses.
+    Of the kinds, joints change lengths, points are coordinates, "turn" changes an angle. `position` is (2, N), m, in
+    each pose, NaN in a gap. ``measure(place, index)`` gives the numbers that bring the point to a place (x, y) in a
+    pose, or as near as its line allows. `row` counts earlier points, and pins of the crank, at nearly the same place.
     """
 
     name: str
@@ -110,21 +97,8 @@ def _words(path):
 class Points:
     """Points of a solution that can be dragged, from the dimensions of its parts and loads.
 
-    Parameters
-    ----------
-    solution : Solution
-        Of one design, at even crank angles over a whole period.
-    places : dict, optional
-        Those of the numbers of its scene, if they are known.
-
-    Examples
-    --------
-    >>> import kinetostatics as ks
-    >>> points = Points(ks.Scene(ks.crank_slider(0.3, 2.0, slider=ks.Link(600.0)), 33.5).solve(8))
-    >>> [handle.label for handle in points.side_by_side()]
-    ['crank length', 'coupler length', 'guide angle', 'guide offset', 'mass centre of the slider']
-    >>> points.dragged("crank_length", 0.327, 0.0, 0), points.dragged("crank_length", 0.327, 0.0, 0, snap=False)
-    ({'crank_length': 0.33}, {'crank_length': 0.327})
+    The solution is of one design at even crank angles over a whole period; `places` are those of the numbers of its
+    scene, if they are known.
     """
 
     def __init__(self, solution, places=None):
@@ -135,17 +109,9 @@ class Points:
 
     def data(self):
         """Handles for a page, their places (N, 2) in single precision, and the snapping step, m."""
-        found = [
-            {
-                "name": handle.name,
-                "label": handle.label,
-                "kind": handle.kind,
-                "paths": handle.paths,
-                "position": handle.position.T.astype(np.float32),
-                "row": handle.row,
-            }
-            for handle in self.side_by_side()
-        ]
+        found = [item._asdict() | {"position": item.position.T.astype(np.float32)} for item in self.side_by_side()]
+        for item in found:
+            del item["measure"]
         return {"handles": found, "snap": snap_step(self.size)}
 
     def dragged(self, name, x, y, index, snap=True, step=None):

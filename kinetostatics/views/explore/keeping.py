@@ -5,6 +5,7 @@ whole or not at all; a file that the case itself was read from never is.
 """
 
 import re
+from functools import partial
 from pathlib import Path
 
 from ...casefile.case import shipped_cases
@@ -105,13 +106,9 @@ def report(session, request):
     from ...sweeps.workers import Workers
 
     with Workers(count=1) as workers:
-        future = workers.submit(_write_report, scenes, path, session.title, shown_units().chosen)
+        write = partial(write_report, title=session.title, units=shown_units().chosen or None)
+        future = workers.submit(write, scenes, path)
         while not future.done():
             yield None
         future.result()
     yield {"report": str(path.absolute()), "saved": path.name}
-
-
-def _write_report(scenes, path, title, units):
-    """Write a report, in another process."""
-    write_report(scenes, path, title=title, units=units or None)

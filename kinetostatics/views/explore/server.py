@@ -214,10 +214,7 @@ def style():
 def listening(session_of_page, port=0):
     """Server in the running event loop, to the end of the block: its address without a fragment, and its gate.
 
-    Raises
-    ------
-    ParameterError
-        The port cannot be used.
+    `ParameterError` if the port cannot be used.
     """
     require_tornado()
     from tornado.httpserver import HTTPServer
@@ -244,18 +241,9 @@ def listening(session_of_page, port=0):
 
 
 def serve(what, variant=None, folder=None, port=0, browser=True, tell=print):
-    """Serve the explore page of a case or scene until Ctrl-C or SIGTERM.
+    """Serve the explore page of a case or scene until Ctrl-C or SIGTERM; arguments as for `Session`.
 
-    Parameters
-    ----------
-    what, variant, folder
-        As for `Session`.
-    port : int
-        0: a free one.
-    browser : bool
-        Open the page in the browser.
-    tell : function
-        Called with the address of the page.
+    Port 0 is a free one; `browser` opens the page in the browser, and `tell` is called with its address.
     """
     require_tornado()
     gc.set_threshold(*COLLECTION_THRESHOLDS)

@@ -8,7 +8,7 @@ answer carries the same `id` and the state to which its numbers belong.
 import json
 import sys
 import warnings
-from collections import OrderedDict
+from functools import lru_cache
 from types import GeneratorType
 from typing import Any
 
@@ -23,8 +23,9 @@ from ...numbers.formatting import pretty_unit
 from ...solution.scene import Scene
 from ..canvas import drawn_limit, ordinary_size, unit_for
 from ..movement import drawing_of, one_pose, turning_sense
+from ..report.html import remarks
 from ..report.tables import KINDS
-from . import answers, fields, groups, keeping, running, searching
+from . import answers, fields, groups, keeping, searching
 from .handles import Points
 
 MAX_SCENES = 32
@@ -41,14 +42,8 @@ STATE_KEYS = ("variant", "values", "chain")
 class Session:
     """Answers to the requests of one page on a case, on a scene, or on a chain that is built on the page.
 
-    Parameters
-    ----------
-    what : Case, str, path, Scene, or dict
-        A dict is the table of a chain (`groups.template`), from which the page starts.
-    variant : str, optional
-        Variant shown first.
-    folder : path, optional
-        The only folder into which files are written; None: none are.
+    A dict is the table of a chain (`groups.template`), from which the page starts, `variant` the one shown first.
+    `folder` is the only one into which files are written; None: none are.
     """
 
     def __init__(self, what, variant=None, folder=None):
@@ -70,7 +65,7 @@ class Session:
         self.saved: tuple[dict, str, str] | None = None
         """State saved last, the path of its file, and the name of its variant there."""
         self._reference: tuple[Any, Any] = None, None
-        self._scenes: OrderedDict[str, Scene] = OrderedDict()
+        self._scene = lru_cache(MAX_SCENES)(self._scene_of_text)
         self.looked: tuple[Any, Any] = None, None
         """Scene of the last look, and the points of its solution."""
 
@@ -85,8 +80,7 @@ class Session:
                 found = ANSWERS[request["kind"]](self, request)
             if isinstance(found, GeneratorType):
                 return self._parts(request, found)
-            notes = list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
-            return self._marked(request, {"notes": notes} | found)
+            return self._marked(request, {"notes": remarks(caught)} | found)
         except Exception as error:
             return self._marked(request, {"problem": problem_text(error)})
 
@@ -113,13 +107,11 @@ class Session:
 
     def scene(self, state):
         """Scene of a state."""
-        key = json.dumps(state, sort_keys=True)
-        if key not in self._scenes:
-            self._scenes[key] = self.base(state).varied(state.get("values", {}))
-            while len(self._scenes) > MAX_SCENES:
-                self._scenes.popitem(last=False)
-        self._scenes.move_to_end(key)
-        return self._scenes[key]
+        return self._scene(json.dumps(state, sort_keys=True))
+
+    def _scene_of_text(self, text):
+        state = json.loads(text)
+        return self.base(state).varied(state.get("values", {}))
 
     def points(self, state, count):
         """Points of a state at even crank angles, gaps allowed: those of the last look, if it is of that state."""
@@ -247,7 +239,7 @@ def describe(session, request):
         for name, item in of_scene(scene).items()
         if item.kind in KINDS
     ]
-    drive = running.motor_of(session, request["state"])[0] is not None
+    drive = answers.motor_of(session, request["state"])[0] is not None
     return {"parameters": fields.fields(scene), "quantities": quantities, "drive": drive}
 
 
@@ -326,7 +318,7 @@ ANSWERS = {
     "open": open_page,
     "describe": describe,
     "look": look,
-    "running": running.running,
+    "running": answers.running,
     "drag": drag,
     "ask": answers.ask,
     "sensitivities": answers.ask_sensitivities,

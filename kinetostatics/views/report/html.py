@@ -78,7 +78,7 @@ def page(subject, progress=lambda text: None):
 
 
 def remarks(caught):
-    """Texts of warnings during the report, each once."""
+    """Texts of the user's warnings, each once."""
     return list(dict.fromkeys(str(item.message) for item in caught if issubclass(item.category, UserWarning)))
 
 
@@ -223,13 +223,7 @@ RENDER_TIME = 20_000
 
 
 def browser():
-    """Path of a browser that prints without a window.
-
-    Raises
-    ------
-    MissingLibraryError
-        No browser is installed; the message lists suitable ones.
-    """
+    """Path of a browser that prints without a window; `MissingLibraryError` without one, which lists suitable ones."""
     found = next((path for name in BROWSERS if (path := shutil.which(name))), None)
     if found is None:
         raise MissingLibraryError(
@@ -240,13 +234,7 @@ def browser():
 
 
 def print_page(path, pdf):
-    """Print a page in a file to a PDF file.
-
-    Raises
-    ------
-    FileError
-        The browser ended without a PDF, or did not end.
-    """
+    """Print a page in a file to a PDF file; `FileError` if the browser does not end, or ends without a PDF."""
     found = browser()
     with tempfile.TemporaryDirectory(prefix="kinetostatics") as folder:
         made = Path(folder) / "page.pdf"

@@ -26,17 +26,9 @@ MAX_ANGLES = 1440
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """One of the machines of a report: a case's variant, or a scene.
+    """One of the machines of a report: a case's variant, or a scene; `step` between its selectable angles, degrees.
 
-    Attributes
-    ----------
-    name : str
-    scene : Scene
-    step : int
-        Step between the selectable angles, degrees.
-    given : mapping of path to (value, unit)
-        Parameters: numbers in SI, or words for derived ones.
-    variant : Variant or None
+    `given` has (value, unit) of each parameter by path: numbers in SI, or words for derived ones.
     """
 
     name: str
@@ -72,16 +64,9 @@ class Machine:
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """The machines of a report, with their title and source.
+    """The machines of a report by name, the reference first, with their title and source.
 
-    Attributes
-    ----------
-    title, source : str
-    machines : mapping of name to Machine
-        The reference is first; variants of a case may have their own reference.
-    command : str
-        Command that made the report.
-    case : Case or None
+    `command` made the report; variants of its `case` may have references of their own.
     """
 
     title: str

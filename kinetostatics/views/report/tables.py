@@ -4,7 +4,7 @@
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -66,14 +66,14 @@ def table_of_frame(frame, caption, note=""):
     return Table(caption, [frame.index.name or "", *columns], rows, 2 if columns[:1] == ["unit"] else 1, note)
 
 
-def _heading_in_units(text):
-    name, unit = parse_heading(text)
-    return _pretty_heading(heading(name, shown_units().of(unit)[1]) if unit else name)
-
-
 def _pretty_heading(text):
     name, unit = parse_heading(text)
     return heading(name, pretty_unit(unit)) if pretty_unit(unit) else text
+
+
+def _heading_in_units(text):
+    name, unit = parse_heading(text)
+    return _pretty_heading(heading(name, shown_units().of(unit)[1]) if unit else name)
 
 
 def with_published(texts, published, path):
@@ -251,9 +251,8 @@ def _largest(row):
 def _without_empty(table):
     """The table without empty columns."""
     kept = [place for place in range(len(table.columns)) if place < 1 or any(row[place] for row in table.rows)]
-    rows = [[row[place] for place in kept] for row in table.rows]
-    columns = [table.columns[place] for place in kept]
-    return Table(table.caption, columns, rows, sum(place < table.words for place in kept), table.note, table.code)
+    columns, *rows = ([row[place] for place in kept] for row in (table.columns, *table.rows))
+    return replace(table, columns=columns, rows=rows, words=sum(place < table.words for place in kept))
 
 
 def comparisons(subject):
@@ -438,12 +437,10 @@ def parts(subject):
 
 def losses(subject):
     """Tables of power lost by joint, for machines with friction."""
-    tables = []
-    for machine in subject.machines.values():
-        if lose(machine.solution):
-            lost = machine.solution.losses
-            tables.append(table_of_frame(lost.frame(), machine.name, f"{str(lost)[0].upper()}{str(lost)[1:]}."))
-    return tables
+    lost = {machine.name: machine.solution.losses for machine in subject.machines.values() if lose(machine.solution)}
+    return [
+        table_of_frame(item.frame(), name, f"{str(item)[0].upper()}{str(item)[1:]}.") for name, item in lost.items()
+    ]
 
 
 def drive_tables(subject):
@@ -487,9 +484,7 @@ def inputs(subject):
 
 
 def _cell(value, factor):
-    if value is None:
-        return ""
-    if isinstance(value, str):
-        return value
+    if value is None or isinstance(value, str):
+        return value or ""
     several = np.ndim(value) > 0
     return ", ".join(number(factor * item, 10) for item in np.ravel(value)) if several else number(factor * value)

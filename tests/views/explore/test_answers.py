@@ -43,17 +43,6 @@ def test_figures_are_those_of_compare_and_means():
     assert rows["energy per turn"].value == solution.energy_per_turn
 
 
-def test_without_a_reference_there_are_no_ratios():
-    rows = [*answers.quantity_rows(RUBBED.solve(8), ["O"]), *answers.figure_rows(RUBBED.solve(8))]
-    assert np.isnan([row.ratio for row in rows]).all()
-    assert np.isnan([row.reference for row in rows]).all()
-
-
-def test_a_reference_may_lack_a_quantity():
-    (row,) = answers.quantity_rows(SAW.solve(360), ["cam_force"], answers.Reference(RUBBED.solve(360)))
-    assert np.isnan(row.ratio)
-
-
 @pytest.mark.filterwarnings("ignore:.*no surface has this much friction")
 def test_what_jams_has_no_mean_and_says_why():
     jammed = ks.Scene(PUMP, 100.0, loads=ks.ProcessForce(3e3), friction={"guide": ks.GuideFriction(4.5)})

@@ -9,6 +9,7 @@ import kinetostatics as ks
 from kinetostatics.numbers.formatting import number
 from kinetostatics.views.explore.session import Session
 
+SAW = "sawframe_2r63"
 CIRCLE, PLAIN = {"variant": "cam-circle", "values": {}}, {"variant": "plain", "values": {}}
 LATEST = 0.3
 """Seconds of the processor within which all questions are answered after the last change."""
@@ -16,7 +17,7 @@ LATEST = 0.3
 
 @pytest.fixture(scope="module")
 def saw():
-    return Session("sawframe_2r63")
+    return Session(SAW)
 
 
 def parts(session, **request):
@@ -87,6 +88,39 @@ def test_without_uncertainties_there_are_no_bands():
     session = Session("pumpjack")
     found, _ = parts(session, kind="tolerances", state={"variant": "weights", "values": {}}, show=["O"])
     assert [part["spreads"] for part in found] == [{}]
+
+
+# Motor speed
+
+
+def speeds(session, **states):
+    return list(session.answer({"id": 1, "kind": "running"} | states))
+
+
+def test_speed_is_that_of_steady_running_of_state_and_reference():
+    session = Session(SAW)
+    states = {"state": {"variant": "cam-cosine", "values": {"slider.mass": 620.0}}, "reference": {"variant": "plain"}}
+    *parts, last = speeds(session, **states)
+    assert [part["running"] for part in parts] == ["state", "reference"]
+    assert not last["more"]
+    for part, (variant, values) in zip(parts, [("cam-cosine", {"slider.mass": 620.0}), ("plain", {})], strict=True):
+        own = ks.load_case(SAW).variants[variant]
+        run = ks.drive.steady(own.scene.varied(values), own.motor, own.flywheel, angles=360)
+        found = part["quantities"]["motor speed"]
+        np.testing.assert_array_equal(found["values"], run.motor_speed)
+        np.testing.assert_array_equal(part["angle"], np.degrees(run.crank_angle))
+        assert (found["unit"], part["period"]) == ("rpm", 360.0)
+
+
+def test_case_without_a_drive_says_so():
+    session, state = Session("pumpjack"), {"variant": "weights", "values": {}}
+    (answer,) = speeds(session, state=state)
+    assert answer["problem"] == "explore: variant 'weights' has no drive"
+    assert not session.answer({"id": 1, "kind": "describe", "state": state})["drive"]
+    assert Session(SAW).answer({"id": 1, "kind": "describe", "state": CIRCLE})["drive"]
+
+
+# Answers while the page goes on
 
 
 @pytest.mark.slow

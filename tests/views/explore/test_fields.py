@@ -17,18 +17,9 @@ WORDS = {
         "crank_speed": ("drive", "crank speed"),
         "gravity.direction": ("gravity", "direction"),
     },
-    ("sawframe_2r63", "cam-circle"): {
-        "cam.centre.x": ("cam", "centre x"),
-        "spring.stiffness": ("spring", "stiffness"),
-    },
-    ("v_twin", "plain"): {
-        "coupler_length2": ("coupler2", "length"),
-        "guide_angle1": ("guide1", "angle"),
-    },
-    ("pumpjack", "weights"): {
-        "rocker_pivot.x": ("rocker", "pivot x"),
-        "pin_H.along": ("pin H", "along"),
-    },
+    ("sawframe_2r63", "cam-circle"): {"cam.centre.x": ("cam", "centre x"), "spring.stiffness": ("spring", "stiffness")},
+    ("v_twin", "plain"): {"coupler_length2": ("coupler2", "length"), "guide_angle1": ("guide1", "angle")},
+    ("pumpjack", "weights"): {"rocker_pivot.x": ("rocker", "pivot x"), "pin_H.along": ("pin H", "along")},
     ("shaper", "cutting"): {"slot_offset": ("lengths", "slot offset")},
     ("sawframe_2r63_friction", "plain"): {"friction.O.mu": ("friction", "O coefficient of friction")},
 }

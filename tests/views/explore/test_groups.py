@@ -21,6 +21,10 @@ def added(raw, kind, name="groups", **keys):
     return groups.edited(raw, {"do": "add", "at": [name], "kind": kind, "keys": keys})
 
 
+def change(*at, **keys):
+    return {"do": "change", "at": list(at), "keys": keys}
+
+
 def toml(value):
     if isinstance(value, dict):
         return "{" + ", ".join(f"{json.dumps(key)} = {toml(part)}" for key, part in value.items()) + "}"
@@ -80,25 +84,15 @@ def test_a_template_equals_its_starter_case(kind, tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(starter(kind, kind), encoding="utf-8")
     case = ks.load_case(path)
-    assert_same(groups.scene_of(groups.template(kind)), next(iter(case.variants.values())).scene)
-
-
-@every("kind", STARTERS)
-def test_a_template_is_equal_when_read_from_a_file(kind, tmp_path):
-    raw = groups.template(kind)
-    assert_same(groups.scene_of(raw), from_file(raw, tmp_path))
+    scene = groups.scene_of(groups.template(kind))
+    assert_same(scene, next(iter(case.variants.values())).scene)
+    assert_same(scene, from_file(groups.template(kind), tmp_path))
 
 
 # Groups and loads are added
 
-LACKS = {
-    "cam roller": "the crank pin slides in its slot; give",
-    "spring": "four-bar has no slider",
-    "process force": "four-bar has no slider",
-    "sawing": "four-bar has no slider",
-    "mowing": "four-bar has no slider",
-    "gas spring": "four-bar has no slider",
-}
+SLIDING = ("spring", "process force", "sawing", "mowing", "gas spring")
+LACKS = {"cam roller": "the crank pin slides in its slot; give"} | dict.fromkeys(SLIDING, "four-bar has no slider")
 """What the four-bar lacks for a load."""
 
 
@@ -158,7 +152,7 @@ def test_gravity_and_friction_are_parts():
     assert any(isinstance(load, ks.Gravity) for load in groups.scene_of(raw).loads)
     for joint in ("B", "guide"):
         raw = groups.edited(raw, {"do": "add", "at": ["friction"], "kind": joint})
-    raw = groups.edited(raw, {"do": "change", "at": ["friction", "B"], "keys": {"radius": "12 mm"}})
+    raw = groups.edited(raw, change("friction", "B", radius="12 mm"))
     friction = groups.scene_of(raw).friction
     assert friction["B"].radius == 0.012
     assert friction["guide"].mu == 0.1
@@ -170,8 +164,7 @@ def test_gravity_and_friction_are_parts():
 
 def test_a_key_changes_and_an_empty_text_takes_it_away():
     raw = groups.template("crank-slider")
-    change = {"do": "change", "at": ["groups", 0], "keys": {"coupler_length": "0.5 m", "slider.mass": ""}}
-    found = groups.edited(raw, change)
+    found = groups.edited(raw, change("groups", 0, **{"coupler_length": "0.5 m", "slider.mass": ""}))
     parameters = groups.scene_of(found).parameters
     assert (parameters["coupler_length"], parameters["slider.mass"]) == (0.5, 0.0)
     assert parameters["coupler.centre.along"] == 0.25  # mid-length
@@ -179,28 +172,23 @@ def test_a_key_changes_and_an_empty_text_takes_it_away():
 
 
 def test_another_kind_of_cam_gets_its_own_keys():
-    raw = groups.edited(groups.template("cam"), {"do": "change", "at": ["groups", 0], "keys": {"cam.kind": "harmonic"}})
+    raw = groups.edited(groups.template("cam"), change("groups", 0, **{"cam.kind": "harmonic"}))
     assert list(raw["groups"][0]["cam"]) == ["kind", "cosine"]
 
 
 @every("kind", ["roller follower", "flat follower", "swinging follower"])
 def test_a_law_of_segments_rises_dwells_and_returns(kind):
     raw = added(groups.template("crank-slider"), kind)
-    raw = groups.edited(raw, {"do": "change", "at": ["groups", 1], "keys": {"cam.kind": "joined"}})
+    raw = groups.edited(raw, change("groups", 1, **{"cam.kind": "joined"}))
     assert np.isfinite(groups.scene_of(raw).solve(24).balancing_torque).all()
     unit = "deg" if kind.startswith("swinging") else "mm"
     text = f"harmonic, 50 {unit}, 60 {unit}, 180 deg; harmonic, 60 {unit}, 50 {unit}, 180 deg"
-    raw = groups.edited(raw, {"do": "change", "at": ["groups", 1], "keys": {"cam.segments": text}})
-    assert raw["groups"][1]["cam"]["segments"][0] == {
-        "kind": "harmonic",
-        "start": f"50 {unit}",
-        "end": f"60 {unit}",
-        "angle": "180 deg",
-    }
+    raw = groups.edited(raw, change("groups", 1, **{"cam.segments": text}))
+    first = {"kind": "harmonic", "start": f"50 {unit}", "end": f"60 {unit}", "angle": "180 deg"}
+    assert raw["groups"][1]["cam"]["segments"][0] == first
     for wrong, words in SEGMENTS_WITH_FAULTS.items():
-        change = {"do": "change", "at": ["groups", 1], "keys": {"cam.segments": wrong}}
         with pytest.raises(groups.ChainError, match=words):
-            groups.edited(raw, change)
+            groups.edited(raw, change("groups", 1, **{"cam.segments": wrong}))
 
 
 SEGMENTS_WITH_FAULTS = {
@@ -212,7 +200,7 @@ SEGMENTS_WITH_FAULTS = {
 
 
 def test_crank_and_drive_change_as_a_part():
-    raw = groups.edited(groups.template("four-bar"), {"do": "change", "at": [], "keys": {"crank_speed": "90 rpm"}})
+    raw = groups.edited(groups.template("four-bar"), change(crank_speed="90 rpm"))
     assert groups.scene_of(raw).crank_speed == pytest.approx(3.0 * np.pi)
 
 
@@ -221,20 +209,14 @@ def test_a_group_that_carries_others_is_removed_with_them_only_if_asked():
     raw = added(raw, "process force", "loads")
     raw = groups.edited(raw, {"do": "add", "at": ["friction"], "kind": "guide2"})
     removal = {"do": "remove", "at": ["groups", 0]}
-    words = (
-        r"^groups\[1\] \(rocker\) carries groups\[2\] \(slider\), loads\[1\] .*, friction\.guide2; remove these too$"
-    )
-    with pytest.raises(groups.ChainError, match=words):
+    words = r"\(rocker\) carries groups\[2\] \(slider\), loads\[1\] .*, friction\.guide2; remove these too$"
+    with pytest.raises(groups.ChainError, match=r"^groups\[1\] " + words):
         groups.edited(raw, removal)
     with pytest.raises(groups.ChainError, match="is the last group; add another one first"):
         groups.edited(raw, removal | {"attached": True})
+    assert groups.edited(raw, {"do": "remove", "at": ["loads", 0]})["loads"] == raw["loads"][1:]
     without = groups.edited(raw, {"do": "remove", "at": ["groups", 1], "attached": True})
     assert without == groups.template("four-bar") | {"friction": {}}
-
-
-def test_a_load_is_removed_alone():
-    raw = groups.template("four-bar")
-    assert groups.edited(raw, {"do": "remove", "at": ["loads", 0]})["loads"] == raw["loads"][1:]
 
 
 FAULTS = [
@@ -268,9 +250,8 @@ def test_an_action_with_a_fault_is_refused_in_words(fault):
 
 
 def test_a_fault_names_its_key():
-    action = {"do": "change", "at": ["groups", 0], "keys": {"slider.mass": "heavy"}}
     with pytest.raises(groups.ChainError) as caught:
-        groups.edited(groups.template("crank-slider"), action)
+        groups.edited(groups.template("crank-slider"), change("groups", 0, **{"slider.mass": "heavy"}))
     assert [keys for keys, _ in caught.value.faults] == [("groups", 0, "slider", "mass")]
 
 
@@ -289,6 +270,7 @@ def with_groups(items):
 
 
 PIN = {"kind": "pin", "on": "crank", "at": ["1 m", "0 m"]}
+CHAIN = groups.template("four-bar")
 HOSTILE = {
     "list": ([], "a chain must be a table"),
     "none": (None, "a chain must be a table"),
@@ -327,6 +309,9 @@ def test_a_hostile_table_ends_in_one_message(name):
         groups.scene_of(raw)
     assert words in str(caught.value)
     assert len(str(caught.value)) < 4000
+    if name not in ("object", "numbers as keys"):  # no JSON
+        found = Session(CHAIN).answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
+        assert words in found["problem"]
 
 
 def test_names_with_quotes_and_markup_are_names():
@@ -435,8 +420,7 @@ def test_a_number_without_a_place_in_the_table_stays_beside_it():
     state = state_of("crank-slider", **{"coupler.centre.along": 0.19})  # mid-length in the table
     found, _ = groups.state_after(state, {"do": "remove", "at": ["loads", 0]})
     assert found["values"] == {"coupler.centre.along": 0.19}
-    change = {"do": "change", "at": ["groups", 0], "keys": {"coupler.centre": "150 mm"}}
-    found, notes = groups.state_after(found, change)
+    found, notes = groups.state_after(found, change("groups", 0, **{"coupler.centre": "150 mm"}))
     assert found["values"] == {}
     assert notes == ["changed numbers are lost with the part that had them: coupler.centre.along"]
 
@@ -536,14 +520,6 @@ def test_a_session_begins_with_a_chain_and_keeps_its_state(kind, tmp_path):
 def test_the_command_needs_a_case_or_a_mechanism_to_begin_with(options, capsys):
     assert main(["explore", *options, "--no-browser"]) == 2
     assert "explore: give a case, or --new with a mechanism to begin with" in capsys.readouterr().err
-
-
-def test_a_hostile_chain_in_a_state_ends_in_a_message():
-    session = Session(groups.template("four-bar"))
-    for name, (raw, words) in HOSTILE.items():
-        if name not in ("object", "numbers as keys"):  # no JSON
-            found = session.answer({"id": 1, "kind": "describe", "state": {"chain": raw}})
-            assert words in found["problem"]
 
 
 # A chain of many actions is the same from a file

@@ -17,7 +17,7 @@ from support.mirror import mirrored
 from support.turning_machines import KINDS, random_machine
 
 ANGLES, INDEX = 24, 5
-STEPS = np.array([[3e-3, 2e-3], [-3e-3, -2e-3], [2e-3, -3e-3]])
+STEPS = np.array([[3e-3, 2e-3], [-2e-3, 3e-3]])
 """Small moves of the pointer, over the machine's size."""
 CLOSE = 1e-9
 QUICK_CASES = "pumpjack", "yoke_pump", "v_twin"

@@ -25,11 +25,8 @@ def answered(answer):
 
 
 def test_an_answer_comes_back_with_its_arrays():
-    values = {
-        "f8": np.linspace(0, 1, 7),
-        "f4": np.arange(3, dtype=np.float32),
-        "turned": np.arange(6.0).reshape(2, 3).T,
-    }
+    values = {"f8": np.linspace(0, 1, 7), "f4": np.arange(3, dtype=np.float32)}
+    values["turned"] = np.arange(6.0).reshape(2, 3).T
     found = answered({"id": 3, "inner": [{"text": 'a "title" <b>', **values}], "number": np.float64(0.1)})
     (inner,) = found["inner"]
     assert (found["id"], found["number"], inner["text"]) == (3, 0.1, 'a "title" <b>')

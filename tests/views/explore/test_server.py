@@ -88,8 +88,8 @@ class Page:
 
 def test_it_listens_on_this_machine_alone():
     async def sockets(client):
-        rows = [line.split() for line in Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()[1:]]
-        rows += [line.split() for line in Path("/proc/net/tcp6").read_text(encoding="ascii").splitlines()[1:]]
+        tables = (Path(f"/proc/net/{name}").read_text(encoding="ascii").splitlines()[1:] for name in ("tcp", "tcp6"))
+        rows = [line.split() for table in tables for line in table]
         return [row[1] for row in rows if row[3] == "0A" and int(row[1].split(":")[1], 16) == client.port]
 
     if not Path("/proc/net/tcp6").exists():
@@ -142,9 +142,8 @@ FOREIGN = ["", "null", "http://evil.example", "http://127.0.0.1:1", "https://{ho
 def test_a_socket_of_another_origin_is_refused(origin):
     async def refused(client):
         headers = {"Origin": origin.format(host=client.host)} if origin else {}
-        request = HTTPRequest(f"ws://{client.host}/socket", headers=headers)
         with pytest.raises(HTTPClientError) as error:
-            await websocket_connect(request)
+            await websocket_connect(HTTPRequest(f"ws://{client.host}/socket", headers=headers))
         return error.value.code
 
     assert served(refused) == 403
@@ -178,10 +177,7 @@ def test_a_page_without_the_token_is_closed(name):
             fields["token"] = client.gate.token
         return await page.ask(**fields), page.end
 
-    assert served(closed) == (
-        None,
-        (1008, "This address is of an earlier start; open the one printed last."),
-    )
+    assert served(closed) == (None, (1008, "This address is of an earlier start; open the one printed last."))
 
 
 def test_a_ticket_opens_one_page_which_learns_the_token():
