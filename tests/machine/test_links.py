@@ -16,11 +16,27 @@ ANGLE, RATIO, SLOPE = 0.6, -0.8, 0.35
 ALONG, ACROSS = 0.4, -0.15
 JOINT = Joint((0.2, 0.1), (0.5, -0.3), (-0.7, 0.9))
 LINK = LinkMotion(JOINT, (np.cos(ANGLE), np.sin(ANGLE)), RATIO, SLOPE)
-SPEED = 7.0
+SPEED, ACCELERATION = 7.0, -11.0
 
 
 def z(vector):
     return complex(*vector)
+
+
+ARM = complex(ALONG, ACROSS) * np.exp(1j * ANGLE)
+
+
+def test_load_is_weight_less_inertia_at_the_joint():
+    body = ks.Link(3.0, (ALONG, ACROSS), 0.2).body
+    found = links.load(LINK, body, SPEED**2, ACCELERATION, (0.0, -9.81))
+    centre = (z(JOINT.second) + (1j * SLOPE - RATIO**2) * ARM) * SPEED**2
+    centre += (z(JOINT.first) + 1j * RATIO * ARM) * ACCELERATION
+    force = 3.0 * (-9.81j - centre)
+    turning = 0.2 * (SLOPE * SPEED**2 + RATIO * ACCELERATION)
+    assert z(found.force) == pytest.approx(force, rel=1e-14)
+    assert found.moment == pytest.approx((ARM.conjugate() * force).imag - turning, rel=1e-14)
+    work = (force * z(JOINT.first).conjugate()).real + found.moment * RATIO
+    assert links.virtual_work(LINK, found) == pytest.approx(work, rel=1e-14)
 
 
 def test_fast_spin_keeps_the_moment_exact():
@@ -130,6 +146,24 @@ def test_what_has_no_number_is_told_beside_what_has():
 
 
 # Friction by joint
+
+SAW = ks.cam_crank_slider(ks.cams.Circle(0.3, (-0.02, 0.0)), 2.0)
+LEVER = ks.slotted_lever(0.1, pivot=(0.0, -0.3))
+
+
+@every(
+    "mechanism, joint, kind",
+    [
+        (SAW, "O", ks.PinFriction),
+        (SAW, "B", ks.PinFriction),
+        (SAW, "guide", ks.GuideFriction),
+        (SAW, "cam", ks.RollerFriction),
+        (LEVER, "slot", ks.SlotFriction),
+    ],
+)
+def test_each_pair_has_its_kind(mechanism, joint, kind):
+    (name,) = (name for name in mechanism.pairs if name == joint or name.startswith(f"{joint}_"))
+    assert friction.friction_kind(mechanism.pairs[name]) is kind
 
 
 def test_mapping_keeps_joints_without_friction():

@@ -20,6 +20,9 @@ pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 EPSILON = 2.0**-53
 
 
+# Random four-bars
+
+
 # Laws
 
 
