@@ -78,6 +78,7 @@ def test_a_sketch_shows_all_lengths_and_masses_of_an_offset_crank_slider():
     check(PUMP)
 
 
+@pytest.mark.slow
 @every("kind", KINDS)
 def test_declared_dimensions_measure_what_they_say(kind):
     mechanism = random_machine(kind, loads=()).mechanism
