@@ -64,7 +64,7 @@ def check(machine):
 @every("name", sorted(shipped_cases()))
 def test_every_length_of_a_shipped_machine_stands_once_on_its_sketch(name):
     case = shipped(name)
-    for variant in {repr(item.mechanism): item for item in case.variants.values()}.values():
+    for variant in {tuple(places_by_path(item.mechanism)): item for item in case.variants.values()}.values():
         check(variant)
 
 
