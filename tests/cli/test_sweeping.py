@@ -10,6 +10,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main, sweep_commands
+from support.case_files import shipped
 from support.every import every
 
 SWEEP = ["sweep", "sawframe_2r63", "--variant", "cam-circle", "--vary", "slider.mass=600..650 kg:3"]
@@ -45,7 +46,7 @@ def test_the_swept_variant_is_named_with_the_reason(options, words, capsys):
     vary = ["--vary", "slider.mass=600..650 kg:2", "--angles", "12"]
     assert main(["sweep", "sawframe_2r63", *vary, *options]) == 0
     told = " ".join(capsys.readouterr().out.split("\n\n")[0].split())
-    assert told.startswith(ks.load_case("sawframe_2r63").title)
+    assert told.startswith(shipped("sawframe_2r63").title)
     assert told.endswith(words)
 
 
@@ -112,7 +113,7 @@ def test_what_is_no_uncertainty_is_refused_all_at_once(texts, message):
 
 def test_a_case_without_tolerances_says_so():
     with pytest.raises(ks.ParameterError, match=r"toggle_press.toml has no \[tolerances\]"):
-        sweep_commands.standard_uncertainties(ks.load_case("toggle_press"), ["idle"], ["tolerances"])
+        sweep_commands.standard_uncertainties(shipped("toggle_press"), ["idle"], ["tolerances"])
 
 
 def test_run_prints_uncertainty_and_its_sources(monkeypatch, capsys):

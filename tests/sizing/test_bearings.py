@@ -10,6 +10,7 @@ import pytest
 
 import kinetostatics as ks
 from support import change_points, followers, mirror, pages
+from support.case_files import shipped
 from support.every import every
 from support.units import UNITS
 
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 
 def saw(variant, radius=None):
     """The saw of the case, its cam roller of a radius."""
-    s = ks.load_case("sawframe_2r63").solve(variant, 8)
+    s = shipped("sawframe_2r63").solve(variant, 8)
     if radius is None:
         return s
     roller, *others = s.mechanism.groups

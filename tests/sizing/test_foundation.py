@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 import kinetostatics as ks
+from support.case_files import shipped
 from support.every import every
 from support.units import UNITS
 
@@ -60,7 +61,7 @@ def test_pump_of_75_kg():
 
 @every("variant, v_rms, ground", [("plain", 235.2, 92.7), ("cam-circle", 235.3, 90.2)])
 def test_saw_on_30_t_gains_nothing(variant, v_rms, ground):
-    s = ks.load_case("sawframe_2r63").solve(variant, 8)
+    s = shipped("sawframe_2r63").solve(variant, 8)
     block = ks.sizing.mount(s, mass=30e3, stiffness=30e3 * (0.5 * s.crank_speed) ** 2, damping=0.1)
     assert round(block.v_rms * 1e3, 1) == v_rms
     assert round(block.ground_x / 1e3, 1) == ground

@@ -3,10 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from kinetostatics.casefile.schema.designs import (
-    OneDesign,
-    RobustTable,
-)
+from kinetostatics.casefile.schema.designs import OneDesign, RobustTable
 from support.every import every
 
 VARY = {"spring.stiffness": ["600 kN/m", "900 kN/m"]}
