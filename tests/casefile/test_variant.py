@@ -87,6 +87,7 @@ def test_unknown_variant_error_names_the_nearest(ask):
     assert (type(again), str(again)) == (NoSuchNameError, str(raised.value))
 
 
+@pytest.mark.slow
 def test_a_design_that_is_not_there_is_told_so_too():
     with pytest.raises(ks.CaseError, match=r"design is 'x', allowed: none"):
         shipped("mower_drive").designs["x"]

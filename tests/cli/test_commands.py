@@ -360,6 +360,7 @@ def test_explain_refuses_what_is_not_there(options, words, capsys):
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_stability_prints_a_line_a_method(tmp_path, monkeypatch, capsys):
     from kinetostatics.studies import stability
 

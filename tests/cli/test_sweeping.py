@@ -16,6 +16,7 @@ from support.every import every
 SWEEP = ["sweep", "sawframe_2r63", "--variant", "cam-circle", "--vary", "slider.mass=600..650 kg:3"]
 
 
+@pytest.mark.slow
 def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
     figure = tmp_path / "map.png"
     assert main([*SWEEP, "--json", "--plot", str(figure)]) == 0
@@ -62,6 +63,7 @@ def test_best_designs_say_which_way_a_ratio_is_better(capsys):
     assert "largest first: above 1 is in favour of the design" in words
 
 
+@pytest.mark.slow
 def test_losses_of_a_variant_with_friction_are_shown(capsys):
     arguments = ["sweep", "sawframe_2r63_friction", "--variant", "plain", "--vary", "slider.mass=600..650 kg:2"]
     assert main(arguments) == 0

@@ -59,6 +59,7 @@ def test_pump_of_75_kg():
     assert round(block.travel_x * 1e3, 3) == 4.125
 
 
+@pytest.mark.slow
 @every("variant, v_rms, ground", [("plain", 235.2, 92.7), ("cam-circle", 235.3, 90.2)])
 def test_saw_on_30_t_gains_nothing(variant, v_rms, ground):
     s = shipped("sawframe_2r63").solve(variant, 8)
@@ -336,6 +337,7 @@ def test_harmonics_and_numbers_by_name():
         _ = block.v_max
 
 
+@pytest.mark.slow
 def test_figure_has_a_row_for_each_moving_direction():
     figure = ks.plots.mount(ks.sizing.mount(rich(), mass=900.0, stiffness=[5e4, 9e4], damping=0.1))
     assert [ax.get_ylabel() for ax in figure.axes][::2] == ["velocity, x [mm/s]", "velocity, y [mm/s]"]

@@ -251,6 +251,7 @@ def test_the_rotating_part_of_a_coupler_with_its_mass_aside():
 # Quantities
 
 
+@pytest.mark.slow
 def test_extremes_sweeps_programs_and_cases(tmp_path):
     text = """
         title = "pump of two throws"
