@@ -230,11 +230,7 @@ COMMANDS: dict[str, tuple[Any, ...]] = {
             required=True,
         ),
         _option("--output", "OUTPUT", '"largest O", "ratio mean_absolute ..."', action="append"),
-        _option(
-            "--variant",
-            "NAME",
-            "variant with the parameters (the first besides the reference of the case)",
-        ),
+        _option("--variant", "NAME", "variant with the parameters (the first besides the reference of the case)"),
         _option("--reference", "NAME", "reference of ratios (the variant's reference)"),
         _option("--sample", "N", "N designs of a Latin hypercube instead of a grid", _designs),
         _option("--angles", "N", "crank angles over the period, 12 at least (360)", _angles, default=360),

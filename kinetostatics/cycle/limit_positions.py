@@ -57,6 +57,8 @@ class Turn:
         The change points among `limits` that the mechanism passes, where forces grow; empty unless `forces` is True.
     extrema : dict
         Extrema by quantity, cached.
+    bounds : dict
+        Bounds on the rounding errors of extrema by quantity and the bytes of their crank angles, cached.
     """
 
     at: Any
@@ -67,6 +69,7 @@ class Turn:
     jumps: np.ndarray
     passed: np.ndarray
     extrema: dict[str, Any] = field(default_factory=dict, init=False)
+    bounds: dict[tuple[str, bytes], Any] = field(default_factory=dict, init=False)
     _beside_limits: dict[tuple[float, int], Any] = field(default_factory=dict, init=False)
     """Solutions close to limit positions, by the crank angle of the position and the side."""
 

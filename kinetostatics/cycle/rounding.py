@@ -65,30 +65,35 @@ class BoundedExtremes:
 
     @cached_property
     def _bounds(self):
-        """Bounds by name, computed together; empty if none exist.
+        """Bounds by name, computed together and cached for all solutions of the same turn; empty if none exist.
 
         At a jump the bound is the larger one of both sides.
         """
-        found = {name: item for name, item in self.found.items() if len(item)}
+        turn = self.solution.sampled
+        known = {
+            name: bounds
+            for name, item in self.found.items()
+            if len(item) and (bounds := turn.bounds.get((name, item.angle.tobytes()))) is not None
+        }
+        found = {name: item for name, item in self.found.items() if len(item) and name not in known}
         if not found:
-            return {}
+            return known
         angle = np.unique(np.concatenate([item.angle for item in found.values()]))
-        jumps = np.flatnonzero((np.abs(angle[:, None] - self.solution.sampled.kinks) < AT_JUMP).any(axis=1))
+        jumps = np.flatnonzero((np.abs(angle[:, None] - turn.kinks) < AT_JUMP).any(axis=1))
         beside = np.concatenate([angle[jumps] - BOUND_OFFSET, angle[jumps] + BOUND_OFFSET])
-        at = self.solution.sampled.at.moved_to(np.append(angle, beside))
+        at = turn.at.moved_to(np.append(angle, beside))
         engine = NUMPY if getattr(at.engine, "compiled", False) else at.engine  # no loop is compiled for a table
         try:
             values, errors = engine.with_bounds(at.dynamics, tuple(found))
         except NotGivenError:
-            return {}
+            return known
         vectors = [name for name in found if of_scene(self.solution)[name].vector]
         errors = errors | {name: of_magnitude(values[name], errors[name]) for name in vectors}
-        bounds = {}
         for name, item in found.items():
             own, sides = np.array(errors[name][: angle.size]), errors[name][angle.size :].reshape(2, -1)
             own[jumps] = np.fmax(*sides)
-            bounds[name] = own[np.searchsorted(angle, item.angle)]
-        return bounds
+            known[name] = turn.bounds[name, item.angle.tobytes()] = own[np.searchsorted(angle, item.angle)]
+        return known
 
 
 def without_rounding(solution, name, values, bound=0.0):

@@ -108,13 +108,12 @@ DISTANCE_COSTS = np.arange(len(DISTANCES) * len(DIRECTIONS)) / 40.0
 class _Places(NamedTuple):
     """Possible places of a label, in pixels.
 
-    `offsets` (P, 2) lead from the point to the lower left corner; `boxes` (P, 4) and `bounds` are the same boxes. A
-    label far away has a leader from the point to its nearest side; `reaches` (P, 4) are the boxes of the leaders.
+    `offsets` (P, 2) lead from the point to the lower left corner of the `boxes` (P, 4). A label far away has a leader
+    from the point to its nearest side; `reaches` (P, 4) are the boxes of the leaders.
     """
 
     offsets: np.ndarray
     boxes: np.ndarray
-    bounds: list
     leaders: list
     reaches: np.ndarray
 
@@ -131,13 +130,13 @@ class _Places(NamedTuple):
             for far, box in zip(distance > LEADER_DISTANCE, boxes, strict=True)
         ]
         reaches = np.array([np.full(4, np.nan) if leader is None else _extents(leader) for leader in leaders])
-        return cls(offsets, boxes, [Bbox.from_extents(box) for box in boxes], leaders, reaches)
+        return cls(offsets, boxes, leaders, reaches)
 
     def crossed(self, path, extents, filled):
         """Whether a path meets the box of each place, (P,); only boxes within its extents are tested exactly."""
         count = _overlap(self.boxes, extents[None])[:, 0].astype(int)
         for place in np.flatnonzero(count):
-            count[place] = path.intersects_bbox(self.bounds[place], filled=filled)
+            count[place] = path.intersects_bbox(Bbox.from_extents(self.boxes[place]), filled=filled)
         return count
 
     def met(self, others):

@@ -4,18 +4,15 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import PLAIN, case_file, problems
+from support.case_files import PLAIN, case_file, problems, shipped
 
 
 def test_sawframe_case_equals_its_python_mechanism():
-    variant = ks.load_case("sawframe_2r63").solve("cam-circle", angles=90)
+    variant = shipped("sawframe_2r63").solve("cam-circle", angles=90)
     spring = ks.Spring.balancing(600.0, 320 * np.pi / 30, 2.0)
     by_hand = ks.solve(
         ks.cam_crank_slider(
-            ks.cams.Circle(0.3, (-0.0219, 0.0)),
-            2.0219,
-            coupler=ks.Link(150, 2.0219 / 2, 20.5),
-            slider=ks.Link(600),
+            ks.cams.Circle(0.3, (-0.0219, 0.0)), 2.0219, coupler=ks.Link(150, 2.0219 / 2, 20.5), slider=ks.Link(600)
         ),
         2 * np.pi * np.arange(90) / 90,
         crank_speed=320 * np.pi / 30,
@@ -26,13 +23,13 @@ def test_sawframe_case_equals_its_python_mechanism():
 
 
 def test_cosine_law_gives_the_coupler_length():
-    mechanism = ks.load_case("sawframe_2r63").variants["cam-cosine"].mechanism
+    mechanism = shipped("sawframe_2r63").variants["cam-cosine"].mechanism
     assert mechanism.groups[-1].coupler_length == pytest.approx(2.02190517686444745, rel=1e-15)
 
 
 @pytest.mark.slow
 def test_compare_gives_the_published_rows_beside_ours():
-    table = ks.load_case("sawframe_2r63").comparison_table("cam-cosine")
+    table = shipped("sawframe_2r63").comparison_table("cam-cosine")
     assert table.loc["mean |balancing torque|", "published"] == "6.77 (ratio)"
     assert table.loc["mean |balancing torque|", "ratio"] == pytest.approx(6.778, abs=5e-4)
     assert (table["published"] != "").sum() == 9
@@ -90,7 +87,7 @@ def test_wrong_tables_are_named_with_file_and_column(tmp_path):
 
 def test_unknown_variant_lists_the_known_ones():
     with pytest.raises(ks.CaseError, match=r"'plain', 'cam-circle', 'cam-cosine', .*; did you mean 'cam-circle'"):
-        ks.load_case("sawframe_2r63").solve("cam-cirle")
+        shipped("sawframe_2r63").solve("cam-cirle")
 
 
 def test_a_published_figure_without_a_row_is_refused(tmp_path):

@@ -7,15 +7,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_chains import (
-    BY_TRAVEL,
-    EXAMPLES,
-    IN_PYTHON,
-    LOADS,
-    PUMP,
-    agree,
-    rpm,
-)
+from support.case_chains import BY_TRAVEL, EXAMPLES, IN_PYTHON, LOADS, PUMP, agree, rpm
 from support.case_files import case_file, problems
 from support.every import every
 

@@ -5,7 +5,7 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.casefile.designs import write_found
-from support.case_files import DUTIES, FRONT, STIFFER, saw_with
+from support.case_files import DUTIES, FRONT, STIFFER, saw_with, shipped
 from support.every import every
 
 
@@ -13,7 +13,7 @@ def test_a_design_of_a_file_finds_what_python_finds(tmp_path):
     case = ks.load_case(saw_with(STIFFER, tmp_path))
     found = case.designs["stiffer"].find()
     by_hand = ks.design.optimise(
-        ks.load_case("sawframe_2r63"),
+        shipped("sawframe_2r63"),
         {"spring.stiffness": (6e5, 9e5)},
         maximise="ratio mean_absolute balancing_torque",
         variant="cam-circle",
@@ -27,7 +27,7 @@ def test_a_torque_free_cam_of_a_file_is_that_of_python(tmp_path):
         '[design.cam]\nkind = "torque-free-cam"\nvariant = "cam-cosine"\ncosine = 2\nminimise = "rms balancing_torque"'
     )
     found = ks.load_case(saw_with(text, tmp_path)).designs["cam"].find()
-    saw = ks.load_case("sawframe_2r63")
+    saw = shipped("sawframe_2r63")
     by_hand = ks.design.torque_free_cam(saw, 2, variant="cam-cosine", minimise="rms balancing_torque")
     assert found.values == by_hand.values
 
@@ -112,7 +112,7 @@ def test_default_variation_is_written_out(tmp_path):
 
 
 def test_cases_without_designs_have_none():
-    assert not ks.load_case("pumpjack").designs
+    assert not shipped("pumpjack").designs
 
 
 def test_impossible_stroke_is_refused_with_numbers(tmp_path):

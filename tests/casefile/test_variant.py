@@ -16,7 +16,7 @@ from support.every import every
 
 
 def test_derived_numbers_follow_and_stated_ones_stay():
-    saw = ks.load_case("sawframe_2r63").variants["cam-circle"]
+    saw = shipped("sawframe_2r63").variants["cam-circle"]
     heavier = saw.varied({"slider.mass": 660.0})
     (_, before), (_, after) = saw.loads, heavier.loads
     assert after.stiffness / before.stiffness == pytest.approx(1.1, rel=1e-14)
@@ -24,7 +24,7 @@ def test_derived_numbers_follow_and_stated_ones_stay():
 
 
 def test_numbers_are_told_with_their_units():
-    saw = ks.load_case("sawframe_2r63").variants["cam-circle"]
+    saw = shipped("sawframe_2r63").variants["cam-circle"]
     assert (saw.parameters["slider.mass"], saw.units["slider.mass"]) == (600.0, "kg")
     assert saw.parameters["coupler.centre"] == "mid-length"
 
@@ -87,9 +87,10 @@ def test_unknown_variant_error_names_the_nearest(ask):
     assert (type(again), str(again)) == (NoSuchNameError, str(raised.value))
 
 
+@pytest.mark.slow
 def test_a_design_that_is_not_there_is_told_so_too():
     with pytest.raises(ks.CaseError, match=r"design is 'x', allowed: none"):
-        ks.load_case("mower_drive").designs["x"]
+        shipped("mower_drive").designs["x"]
 
 
 def test_membership_test_of_variants_works():

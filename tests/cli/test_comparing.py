@@ -5,9 +5,9 @@ import re
 
 import pytest
 
-import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main
+from support.case_files import shipped
 from support.commands import printed_by
 
 pytestmark = pytest.mark.slow
@@ -34,7 +34,7 @@ def test_what_is_rounding_is_0_and_its_ratio_infinite(capsys):
 def test_json_holds_the_tables_of_the_library_in_full(capsys):
     assert main(["compare", "sawframe_2r63", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
-    case = ks.load_case("sawframe_2r63")
+    case = shipped("sawframe_2r63")
     table = case.comparison_table("cam-cosine")
     rows = found["variants"]["cam-cosine"]
     assert list(rows) == list(table.index)

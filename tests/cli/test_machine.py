@@ -13,6 +13,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.casefile.case import shipped_cases
 from kinetostatics.cli import main, output
+from support.case_files import shipped
 from support.every import every
 
 pytestmark = pytest.mark.slow
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.slow
 def test_json_of_run_has_the_true_extremes(capsys):
     assert main(["run", "sawframe_2r63_friction", "--variant", "cam-cosine", "--json", "--angles", "72"]) == 0
     found = json.loads(capsys.readouterr().out)
-    solution = ks.load_case("sawframe_2r63_friction").solve("cam-cosine", 72)
+    solution = shipped("sawframe_2r63_friction").solve("cam-cosine", 72)
     told = found["variants"]["cam-cosine"]
     assert told["extremes"]["balancing_torque"]["largest"] == ks.extremes(solution, "balancing_torque").largest
     assert told["extremes"]["balancing_torque"]["unit"] == "N m"
@@ -36,7 +37,7 @@ def test_json_of_run_has_the_true_extremes(capsys):
 def test_csv_of_run_is_the_table_of_every_angle(capsys):
     assert main(["run", "sawframe_2r63", "--variant", "plain", "--angles", "36", "--csv"]) == 0
     rows = csv.DictReader(io.StringIO(capsys.readouterr().out))
-    solution = ks.load_case("sawframe_2r63").solve("plain", 36)
+    solution = shipped("sawframe_2r63").solve("plain", 36)
     assert [float(row["balancing_torque [N m]"]) for row in rows] == solution.balancing_torque.tolist()
 
 

@@ -10,11 +10,13 @@ import pytest
 
 import kinetostatics as ks
 from kinetostatics.cli import main, sweep_commands
+from support.case_files import shipped
 from support.every import every
 
 SWEEP = ["sweep", "sawframe_2r63", "--variant", "cam-circle", "--vary", "slider.mass=600..650 kg:3"]
 
 
+@pytest.mark.slow
 def test_json_and_csv_hold_every_design_in_full(tmp_path, capsys):
     figure = tmp_path / "map.png"
     assert main([*SWEEP, "--json", "--plot", str(figure)]) == 0
@@ -45,7 +47,7 @@ def test_the_swept_variant_is_named_with_the_reason(options, words, capsys):
     vary = ["--vary", "slider.mass=600..650 kg:2", "--angles", "12"]
     assert main(["sweep", "sawframe_2r63", *vary, *options]) == 0
     told = " ".join(capsys.readouterr().out.split("\n\n")[0].split())
-    assert told.startswith(ks.load_case("sawframe_2r63").title)
+    assert told.startswith(shipped("sawframe_2r63").title)
     assert told.endswith(words)
 
 
@@ -61,6 +63,7 @@ def test_best_designs_say_which_way_a_ratio_is_better(capsys):
     assert "largest first: above 1 is in favour of the design" in words
 
 
+@pytest.mark.slow
 def test_losses_of_a_variant_with_friction_are_shown(capsys):
     arguments = ["sweep", "sawframe_2r63_friction", "--variant", "plain", "--vary", "slider.mass=600..650 kg:2"]
     assert main(arguments) == 0
@@ -112,7 +115,7 @@ def test_what_is_no_uncertainty_is_refused_all_at_once(texts, message):
 
 def test_a_case_without_tolerances_says_so():
     with pytest.raises(ks.ParameterError, match=r"toggle_press.toml has no \[tolerances\]"):
-        sweep_commands.standard_uncertainties(ks.load_case("toggle_press"), ["idle"], ["tolerances"])
+        sweep_commands.standard_uncertainties(shipped("toggle_press"), ["idle"], ["tolerances"])
 
 
 def test_run_prints_uncertainty_and_its_sources(monkeypatch, capsys):

@@ -15,6 +15,7 @@ from kinetostatics.casefile.reading import shipped_cases
 from kinetostatics.explain.explanation import STYLE
 from kinetostatics.mechanics.quantities import components, of_scene
 from kinetostatics.solution.parameters import tables_over_angles
+from support.case_files import shipped
 from support.chains import chain
 from support.every import every
 from support.followers import KINDS as FOLLOWERS
@@ -125,7 +126,7 @@ def test_rounding_stands_as_zero():
 @pytest.mark.slow
 def test_table_rounding_is_zero_too():
     """Horizontally the counterweights of the mower balance the pin: 3e-10 N are left of kilonewtons."""
-    solution = ks.load_case("mower_drive").solve("full", 8)
+    solution = shipped("mower_drive").solve("full", 8)
     told = solution.explain("A", 1.5 * pi)
     left = [abs(step.value) for step in told.results if step.shown == "0"]
     assert left
@@ -144,7 +145,7 @@ def test_notebooks_and_prompts_show_it():
 @pytest.fixture(scope="module", params=["friction of a cam", "chain", "balanced cam"])
 def told(request):
     if request.param == "balanced cam":
-        return ks.load_case("sawframe_2r63_optimal").variants["cam-robust"].scene.solve(0.7).explain("O", 0.7)
+        return shipped("sawframe_2r63_optimal").variants["cam-robust"].scene.solve(0.7).explain("O", 0.7)
     if request.param == "chain":
         scene, angles = chain(1)
         return scene.solve(angles).explain("O", float(angles[0]))
@@ -230,10 +231,9 @@ def some(solution, seed, count=2):
 @every("name", shipped_cases())
 def test_shipped_cases(name):
     case = ks.load_case(name)
-    for seed, variant in enumerate({list(case.variants)[place] for place in (0, -1)}):
-        solution = case.variant(variant).scene.solve(2.3)
-        for quantity in some(solution, seed, 1):
-            ask(solution, quantity, 2.3)
+    solution = case.variant(list(case.variants)[-1]).scene.solve(2.3)
+    for quantity in some(solution, 0, 1):
+        ask(solution, quantity, 2.3)
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 import math
 import warnings
 from dataclasses import replace
+from functools import cache
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 import kinetostatics as ks
 from support import change_points, followers, mirror, pages
+from support.case_files import shipped
 from support.every import every
 from support.units import UNITS
 
@@ -19,9 +21,10 @@ STEEL = (210e9, 0.3)
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 
 
+@cache
 def saw(variant, radius=None):
     """The saw of the case, its cam roller of a radius."""
-    s = ks.load_case("sawframe_2r63").solve(variant, 8)
+    s = shipped("sawframe_2r63").solve(variant, 8)
     if radius is None:
         return s
     roller, *others = s.mechanism.groups
@@ -118,9 +121,14 @@ def summed(force, turned, power):
 FOUR_BAR = {"O": ("crank", "frame"), "A": ("coupler", "crank"), "B": ("rocker", "coupler"), "O2": ("rocker", "frame")}
 
 
+@cache
+def dense():
+    return follower().at(DENSE)
+
+
 @every("joint, power", [(joint, power) for joint in FOUR_BAR for power in (3.0, 10 / 3)])
 def test_dense_sums_of_a_four_bar(joint, power):
-    s = follower().at(DENSE)
+    s = dense()
     pair = FOUR_BAR[joint]
     turned = angle_of(s, pair[0]) - angle_of(s, pair[1])
     load, turns = summed(np.hypot(*s.reaction(joint)), turned, power)
@@ -134,7 +142,7 @@ def test_dense_sums_of_a_four_bar(joint, power):
 
 def test_dense_sums_of_a_roller_on_a_disk_cam():
     """Its centre as seen from the crank; the roller turns by the length of its path over its radius."""
-    s = follower().at(DENSE)
+    s = dense()
     x, y = s.position("R")
     path = (x + 1j * y) * np.exp(-1j * DENSE)
     force = s.scalar("contact_force")

@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 import kinetostatics as ks
+from support.case_files import shipped
 from support.every import every
 from support.units import UNITS
 
@@ -58,9 +59,10 @@ def test_pump_of_75_kg():
     assert round(block.travel_x * 1e3, 3) == 4.125
 
 
+@pytest.mark.slow
 @every("variant, v_rms, ground", [("plain", 235.2, 92.7), ("cam-circle", 235.3, 90.2)])
 def test_saw_on_30_t_gains_nothing(variant, v_rms, ground):
-    s = ks.load_case("sawframe_2r63").solve(variant, 8)
+    s = shipped("sawframe_2r63").solve(variant, 8)
     block = ks.sizing.mount(s, mass=30e3, stiffness=30e3 * (0.5 * s.crank_speed) ** 2, damping=0.1)
     assert round(block.v_rms * 1e3, 1) == v_rms
     assert round(block.ground_x / 1e3, 1) == ground
@@ -335,6 +337,7 @@ def test_harmonics_and_numbers_by_name():
         _ = block.v_max
 
 
+@pytest.mark.slow
 def test_figure_has_a_row_for_each_moving_direction():
     figure = ks.plots.mount(ks.sizing.mount(rich(), mass=900.0, stiffness=[5e4, 9e4], damping=0.1))
     assert [ax.get_ylabel() for ax in figure.axes][::2] == ["velocity, x [mm/s]", "velocity, y [mm/s]"]

@@ -10,6 +10,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.design.case_text import write_case
 from kinetostatics.errors import ConditionWarning, KinetostaticsError
+from support.case_files import shipped
 from support.every import every
 
 SPEED = 2000 * np.pi / 30
@@ -60,7 +61,7 @@ def harmonic(values, order):
 
 
 def plain_saw():
-    return ks.load_case("sawframe_2r63").variant("plain")
+    return shipped("sawframe_2r63").variant("plain")
 
 
 # Published and known numbers
@@ -250,6 +251,7 @@ def test_the_rotating_part_of_a_coupler_with_its_mass_aside():
 # Quantities
 
 
+@pytest.mark.slow
 def test_extremes_sweeps_programs_and_cases(tmp_path):
     text = """
         title = "pump of two throws"
@@ -347,7 +349,7 @@ def pair(pin, first, second, on="C"):
 
 
 def cam_saw():
-    return ks.load_case("sawframe_2r63").variant("cam-circle").mechanism
+    return shipped("sawframe_2r63").variant("cam-circle").mechanism
 
 
 @every(

@@ -7,6 +7,7 @@ from scipy.interpolate import CubicSpline
 
 import kinetostatics as ks
 from kinetostatics.sizing.play import SCREEN, effective_mass
+from support.case_files import shipped
 
 pytestmark = pytest.mark.filterwarnings("ignore::kinetostatics.errors.HintWarning")
 R, L, COUPLER, SLIDER = 0.05, 0.2, ks.Link(1.0, (0.08, 0.01), 0.01), ks.Link(2.0)
@@ -17,7 +18,7 @@ def pump(coupler=COUPLER, slider=SLIDER, speed=100.0, **more):
 
 
 def saw(variant, crank=None):
-    at = ks.load_case("sawframe_2r63").solve(variant, 8)
+    at = shipped("sawframe_2r63").solve(variant, 8)
     made = at.mechanism if crank is None else at.mechanism.with_link("crank", crank)
     return ks.solve(made, 8, crank_speed=at.crank_speed, loads=at.loads)
 

@@ -7,6 +7,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.sizing import sections as strength
 from support import change_points, pages
+from support.case_files import shipped
 
 SPEED, R, L, SLIDER = 33.5, 0.3, 2.0, 600.0
 STEEL = {"second_moment": 8e-5, "youngs_modulus": 206e9}
@@ -128,7 +129,7 @@ def test_textbook_rod_and_its_true_largest_moment():
 
 def case_sections(variant, concentrated):
     """The case's coupler, or a uniform bar of the same mass instead."""
-    s = ks.load_case("sawframe_2r63").solve(variant, 72)
+    s = shipped("sawframe_2r63").solve(variant, 72)
     link = s.mechanism.links["coupler"]
     length = 2 * link.centre[0]
     if concentrated:

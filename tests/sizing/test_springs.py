@@ -10,6 +10,7 @@ from scipy.integrate import quad, solve_ivp
 import kinetostatics as ks
 from kinetostatics.machine.loads.surge import end_stiffness
 from kinetostatics.sizing.springs import MATERIALS, NUMBERS
+from support.case_files import shipped
 from support.every import every
 from support.units import UNITS
 
@@ -42,7 +43,7 @@ def test_norton_example_14_4():
 
 @pytest.fixture(scope="module")
 def saw():
-    return ks.load_case("sawframe_2r63").variants["cam-circle"].scene
+    return shipped("sawframe_2r63").variants["cam-circle"].scene
 
 
 @pytest.mark.parametrize(("stress", "third", "exact"), [

@@ -61,6 +61,7 @@ def test_zero_error_is_drawn_below_rounding(torque):
 # A front as a figure
 
 
+@pytest.mark.slow
 def test_a_front_is_drawn_with_the_source_beside_it():
     import matplotlib.pyplot as plt
 
@@ -137,6 +138,7 @@ def test_page_shows_curves_before_and_after(found):
     plt.close(figure)
 
 
+@pytest.mark.slow
 def test_page_without_cam_shows_the_machine():
     vary = {"coupler_length": ("1.9 m", "2.1 m")}
     found = ks.design.optimise(ks.load_case("sawframe_2r63"), vary, "largest O", angles=36, variant="plain")

@@ -123,6 +123,7 @@ def data(ax):
         (lambda **how: ks.plots.law_motion(LAW, **how)[0], "inch", 1.0 / 0.0254),
     ],
 )
+@pytest.mark.slow
 def test_data_are_in_the_units_of_their_axis(draw, unit, factor):
     bare, chosen = draw(), draw(units=UNITS)
     assert parse_heading(chosen.get_ylabel())[1] == unit
@@ -130,6 +131,7 @@ def test_data_are_in_the_units_of_their_axis(draw, unit, factor):
     plt.close("all")
 
 
+@pytest.mark.slow
 def test_ticks_of_a_drawing_are_in_the_unit_of_its_axes(axes):
     """Data stay in m, so that what is drawn on the same axes later fits; without units the ticks are in m again."""
     for units, factor, label in (({"length": "inch"}, 1.0 / 0.0254, "x [inch]"), (None, 1.0, "x [m]")):
@@ -174,6 +176,7 @@ def test_numbers_of_a_sketch_are_in_the_units_that_are_chosen(axes):
     assert "slider.mass = 0.06 t" in texts
 
 
+@pytest.mark.slow
 def test_panels_of_several_machines_go_where_they_are_told(axes):
     named = {"plain": solved(), "again": solved()}
     drawn = ks.plots.free_body(named, "coupler", 60)

@@ -3,10 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from kinetostatics.casefile.schema.designs import (
-    OneDesign,
-    RobustTable,
-)
+from kinetostatics.casefile.schema.designs import OneDesign, RobustTable
 from support.every import every
 
 VARY = {"spring.stiffness": ["600 kN/m", "900 kN/m"]}
@@ -33,6 +30,7 @@ def test_texts_with_units_are_read_to_si():
     assert found.cubic == pytest.approx((0.0, 2e7))
 
 
+@pytest.mark.slow
 def test_a_robust_table_is_the_spread_of_python():
     spread = RobustTable(quantile=0.05, spreads=SPREADS, samples=64, trim=0.03, seed=3).spread
     assert (spread.quantile, spread.samples, spread.trim, spread.seed) == (0.05, 64, 0.03, 3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import kinetostatics as ks
-from support.case_files import case_file, problems
+from support.case_files import case_file, problems, shipped
 
 PUMP = """
 title = "pump"
@@ -122,6 +122,6 @@ def test_a_drive_changes_no_design_or_content(tmp_path):
 
 
 def test_sawframe_drive_is_marked_assumed():
-    saw = ks.load_case("sawframe_2r63")
+    saw = shipped("sawframe_2r63")
     assert {item.flywheel for item in saw.variants.values()} == {1000.0}
     assert saw.variants["plain"].motor.transmission == 1475 / 320

@@ -5,12 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import kinetostatics as ks
-from support.case_chains import (
-    LOADS,
-    PUMP,
-    agree,
-    rpm,
-)
+from support.case_chains import LOADS, PUMP, agree, rpm
 from support.case_files import PLAIN, case_file, problems
 
 

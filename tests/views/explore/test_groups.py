@@ -345,6 +345,7 @@ def test_every_field_is_told_of(part):
         assert "file" not in field["text"]
 
 
+@pytest.mark.slow
 @every("part", KINDS, ids=lambda part: part[1])
 def test_texts_of_a_part_give_the_part_again(part):
     name, kind = part
