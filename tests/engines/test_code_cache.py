@@ -223,6 +223,13 @@ def test_what_else_lies_in_the_folder_is_no_matter(numba, folder):
     assert len(list(folder.rglob(CHECKSUMS))) == 1
 
 
+def test_a_named_folder_is_made_for_the_user_alone(tmp_path, monkeypatch):
+    monkeypatch.setenv("KINETOSTATICS_CACHE", str(tmp_path / "deep" / "own"))
+    folder = code_cache.programs_folder()
+    assert folder == tmp_path / "deep" / "own"
+    assert folder.stat().st_mode & 0o077 == 0
+
+
 def test_an_entry_is_there_when_it_is_whole_and_sealed(tmp_path):
     with new_entry(tmp_path / "entry") as made:
         (made / "code").write_text("x")

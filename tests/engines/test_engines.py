@@ -160,6 +160,11 @@ def test_unknown_joints_are_refused_with_a_list(interpreted):
         solve(SCENES["plain"], SAMPLES, engine="compiled").reaction("C")
 
 
+def test_unknown_engines_are_refused_with_a_list():
+    with pytest.raises(ks.ParameterError, match=r"engine is 'fortran', allowed: .*'numpy', 'compiled'"):
+        solve(SCENES["plain"], SAMPLES, engine="fortran")
+
+
 def test_a_group_that_branches_on_values_is_refused(interpreted):
     scene = with_group(OneSided(ks.Link(3.0, 0.1)))
     assert solve(scene, SAMPLES).scalar("pan moment").shape == SAMPLES.shape

@@ -297,12 +297,13 @@ class PointLoad(PlacedLoad):
 
     def refusals(self, motion):
         """Sentence on the crank angles at which the points meet, so that their line has no direction."""
-        first, second = (motion.position(place) for place in self.between)
-        if not isinstance(first, np.ndarray) or first.dtype != float:
-            return
+        first, second = (vector_or_zero(motion.spot(place).position) for place in self.between)
+        apart = subtract_vectors(first, second)
+        if not all(isinstance(part, float | np.ndarray) and np.asarray(part).dtype == float for part in apart):
+            return  # recorded or traced
         with np.errstate(invalid="ignore"):
             size = motion.mechanism.extent + np.maximum(np.hypot(*first), np.hypot(*second))
-            meet = np.hypot(*(first - second)) <= MEETING_DISTANCE * size
+            meet = np.broadcast_to(np.hypot(*apart) <= MEETING_DISTANCE * size, motion.shape)
         if meet.any():
             yield checks.Problem(
                 f"{self.title}: the points meet {angles_text(motion, meet)}, so its force has no direction there; "
