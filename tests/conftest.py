@@ -13,6 +13,13 @@ import pytest
 gc.set_threshold(20_000, 20, 20)  # modules and thousands of tests live to the end: seldom look for garbage among them
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_collect_file():
+    """Tests themselves have no examples to look for."""
+    found = yield
+    return [one for one in found if type(one).__name__ != "DoctestModule"]
+
+
 @pytest.hookimpl(trylast=True)
 def pytest_collection_finish():
     """What is there before the first test stays, and need not be looked at again and again."""

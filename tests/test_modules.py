@@ -32,6 +32,7 @@ def named_in(path, kinds):
     return kinds & (found | {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)})
 
 
+@pytest.mark.slow
 def test_only_machine_knows_kinds_of_groups():
     """Whoever needs something of a group asks what groups declare, or the builders."""
     public = {name: getattr(ks, name) for name in ks.__all__}

@@ -9,6 +9,8 @@ import types
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 import kinetostatics as ks
 from kinetostatics.machine import group
 from support.every import every
@@ -126,11 +128,13 @@ def test_docstring_sections_are_in_order():
     assert not wrong
 
 
+@pytest.mark.slow
 def test_every_public_method_is_explained():
     classes = {name: item for name, item in public().items() if inspect.isclass(item)}
     assert not {name: missing for name, item in classes.items() if (missing := undocumented(item))}
 
 
+@pytest.mark.slow
 def test_help_starts_with_what_to_call_first():
     text = pydoc.plain(pydoc.render_doc(ks))
     shown = "\n".join(text.splitlines()[:FIRST_SCREEN])

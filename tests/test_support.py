@@ -80,6 +80,7 @@ def test_each_input_has_the_time_of_a_test():
         assert failure(test)[1:] == ["9.0: TimeoutError: took more than 0.8 s"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spend", [work, time.sleep])
 def test_slow_test_is_stopped_once(spend):
     def stopped():

@@ -608,6 +608,7 @@ CALLED = {
 """What errors call some parameters."""
 
 
+@pytest.mark.slow
 @every(("name", "parameter"), numbers(DOORS, SLOW))
 def test_wrong_dimension_names_both(name, parameter):
     make, given, others = (DOORS | SLOW)[name]
@@ -757,6 +758,7 @@ def test_every_number_declares_a_known_unit():
 # What the doors cannot be asked one by one
 
 
+@pytest.mark.slow
 def test_programs_and_scenes_take_quantities():
     program = ks.compile(SCENE, "O", engine="numpy")
     same = program(UNITS.Quantity(90.0, "deg"), {"slider.mass": UNITS.Quantity(2000.0, "g")})["O"]

@@ -7,11 +7,11 @@ import subprocess
 import sys
 import threading
 import time
+from importlib.util import find_spec
 
 import pytest
 
 pytest.importorskip("anywidget")
-pytest.importorskip("jupyterlab")
 pytest.importorskip("selenium")
 from selenium.common.exceptions import WebDriverException
 from selenium.webdriver.common.action_chains import ActionChains
@@ -20,7 +20,10 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.expected_conditions import staleness_of
 from selenium.webdriver.support.ui import WebDriverWait
 
-pytestmark = pytest.mark.slow
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(find_spec("jupyterlab") is None, reason="JupyterLab is not installed"),
+]
 TOKEN = "token-of-this-test"
 PATIENCE = 90.0
 """Seconds in which the kernel starts and answers on a machine that is busy with other tests."""

@@ -90,6 +90,7 @@ def test_unknown_variant_lists_the_known_ones():
         shipped("sawframe_2r63").solve("cam-cirle")
 
 
+@pytest.mark.slow
 def test_a_published_figure_without_a_row_is_refused(tmp_path):
     published = '[published.ratio]\n"mean |balancing torqe|" = "6.77"\n[published.value]\n"largest reaction Q" = "1"\n'
     case = ks.load_case(case_file(tmp_path, PLAIN + published))

@@ -12,6 +12,7 @@ from support.case_files import case_file, problems
 from support.every import every
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", IN_PYTHON)
 def test_chains_of_each_group_equal_python(name):
     case = ks.load_case(EXAMPLES / f"{name}.toml")
@@ -33,6 +34,7 @@ def test_a_chain_is_swept_and_its_tolerances_are_read(tmp_path):
     assert len(set(found["largest D [N]"])) == 6
 
 
+@pytest.mark.slow
 @every("name", IN_PYTHON)
 def test_a_case_varies_in_other_processes(name):
     case = ks.load_case(EXAMPLES / f"{name}.toml")
@@ -59,6 +61,7 @@ def test_a_sampled_cam_stands_in_a_chain(tmp_path):
     assert found.startswith(f"variants.cam.groups[1].cam: {tmp_path / 'none.csv'}: cannot be read")
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam. 360 points")
 def test_noise_of_a_measured_cam_has_a_unit(tmp_path):
     degrees = np.arange(360)
@@ -101,6 +104,7 @@ def test_content_key_is_stable_and_sees_file_changes(tmp_path):
 # Builders
 
 
+@pytest.mark.slow
 def test_slotted_lever_and_scotch_yoke_have_own_keys(tmp_path):
     text = """
 title = "words"
@@ -169,6 +173,7 @@ def test_process_force_table_takes_indicator_diagram(tmp_path):
 AFTER_TDC = "crank_angle [deg], pressure [bar]\n0, 20\n15, 40\n90, 5\n180, 0\n270, 2\n"
 
 
+@pytest.mark.slow
 @every(
     ("keys", "options"),
     [

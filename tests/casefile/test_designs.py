@@ -22,6 +22,7 @@ def test_a_design_of_a_file_finds_what_python_finds(tmp_path):
     assert found.values == by_hand.values
 
 
+@pytest.mark.slow
 def test_a_torque_free_cam_of_a_file_is_that_of_python(tmp_path):
     text = (
         '[design.cam]\nkind = "torque-free-cam"\nvariant = "cam-cosine"\ncosine = 2\nminimise = "rms balancing_torque"'
@@ -32,6 +33,7 @@ def test_a_torque_free_cam_of_a_file_is_that_of_python(tmp_path):
     assert found.values == by_hand.values
 
 
+@pytest.mark.slow
 def test_found_designs_record_their_origin(tmp_path):
     case = ks.load_case(saw_with(STIFFER + FRONT, tmp_path))
     found = {name: item.find() for name, item in case.designs.items()}
@@ -78,6 +80,7 @@ def test_duties_of_a_file_are_those_of_python(tmp_path):
     assert again.designs["front"].raw == case.designs["front"].raw
 
 
+@pytest.mark.slow
 @every(
     ("change", "message"),
     [
@@ -103,6 +106,7 @@ def test_first_other_variant_is_varied_by_default(tmp_path):
     assert ks.load_case(saw_with(text, tmp_path)).designs["cam-circle"].source == "cam-cosine"
 
 
+@pytest.mark.slow
 def test_default_variation_is_written_out(tmp_path):
     text = '[design.one]\nkind = "torque-free-cam"\ncosine = 1\nminimise = "rms balancing_torque"\n'
     case = ks.load_case(saw_with(text + text.replace("one", "two"), tmp_path))

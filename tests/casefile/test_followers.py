@@ -98,6 +98,7 @@ def loaded(tmp_path, text):
     return ks.load_case(path)
 
 
+@pytest.mark.slow
 @every("kind", MADE)
 def test_a_case_is_what_python_makes(tmp_path, kind):
     text, group = MADE[kind]
@@ -110,6 +111,7 @@ def test_a_case_is_what_python_makes(tmp_path, kind):
         assert np.allclose(read(found, name), read(expected, name), rtol=1e-12, atol=1e-12, equal_nan=True)
 
 
+@pytest.mark.slow
 @every("kind", ["roller", "swinging"])
 def test_rollers_rub_by_case_file(tmp_path, kind):
     text, group = MADE[kind]

@@ -101,6 +101,7 @@ def test_a_search_of_a_file_is_written_with_it(tmp_path):
     assert again.comparisons == {"plain": [], "standing": ["standing-short", "longer"]}
 
 
+@pytest.mark.slow
 def test_compare_prints_a_table_for_each_reference(case, path, capsys):
     assert main(["compare", str(path)]) == 0
     printed = capsys.readouterr().out
@@ -111,6 +112,7 @@ def test_compare_prints_a_table_for_each_reference(case, path, capsys):
     assert printed.count("power balance") == 1
 
 
+@pytest.mark.slow
 def test_compare_tells_programs_the_reference(path, capsys):
     assert main(["compare", str(path), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["references"] == {"short": "plain", "standing-short": "standing"}
@@ -128,6 +130,7 @@ def test_a_sweep_names_the_reference_of_the_case_and_that_of_ratios(tmp_path, ca
     assert "ratios refer to standing" in told
 
 
+@pytest.mark.slow
 def test_published_figures_are_of_the_reference_of_the_case(tmp_path, capsys):
     printed = '[published.ratio]\n"mean |balancing torque|" = "6.77"\n'
     path = case_file(tmp_path, PLAIN + UPRIGHT + printed)

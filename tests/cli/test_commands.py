@@ -39,6 +39,7 @@ def test_run_prints_extremes_and_the_power_check(capsys):
     assert "cam" not in printed.split("plain: crank-slider")[1]
 
 
+@pytest.mark.slow
 def test_run_prints_who_causes_a_force(capsys):
     options = ["run", "sawframe_2r63", "--variant", "cam-cosine", "--angles", "36", "--shares", "O"]
     printed = printed_by(options, capsys).split("who causes the peak: reaction O")[1]
@@ -190,6 +191,7 @@ def test_new_case_compares_and_designs_at_once(tmp_path, monkeypatch, capsys, ki
     assert "crank: least largest shaking_force, from " in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_a_new_case_is_a_crank_slider_unless_told(tmp_path, capsys):
     assert main(["new", str(tmp_path / "mine")]) == 0
     assert main(["run", str(tmp_path / "mine.toml"), "--variant", "plain", "--angles", "24"]) == 0
@@ -328,6 +330,7 @@ def test_no_losses_for_a_saw_that_starts_from_rest(tmp_path, capsys):
     assert not re.search("mean power lost|efficiency", printed)
 
 
+@pytest.mark.slow
 def test_explain_prints_or_writes_the_calculation(tmp_path, capsys):
     asked = ["explain", "sawframe_2r63", "--angle", "39.3 deg", "--variant", "cam-circle"]
     printed = printed_by(asked, capsys)
@@ -339,6 +342,7 @@ def test_explain_prints_or_writes_the_calculation(tmp_path, capsys):
         assert path.read_text(encoding="utf-8").startswith(start)
 
 
+@pytest.mark.slow
 @every(
     "options, words", [([], "variant plain, the reference (another by --variant)"), (["--variant", "plain"], "plain")]
 )

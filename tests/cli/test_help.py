@@ -18,6 +18,7 @@ def commands():
     return group.choices
 
 
+@pytest.mark.slow
 @every("name", COMMANDS)
 def test_each_help_has_an_example_that_is_read(name):
     help_text = commands()[name].format_help()

@@ -118,6 +118,7 @@ def test_a_case_without_tolerances_says_so():
         sweep_commands.standard_uncertainties(shipped("toggle_press"), ["idle"], ["tolerances"])
 
 
+@pytest.mark.slow
 def test_run_prints_uncertainty_and_its_sources(monkeypatch, capsys):
     monkeypatch.setenv("COLUMNS", "130")
     assert main(PLAIN) == 0
@@ -136,6 +137,7 @@ def test_number_of_no_variant_is_refused(capsys):
     assert capsys.readouterr().out.count("this variant has none of the uncertain numbers") == 5
 
 
+@pytest.mark.slow
 def test_json_has_all_digits(capsys):
     assert main([*PLAIN, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)["variants"]["plain"]["uncertainty"]

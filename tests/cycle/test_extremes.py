@@ -22,6 +22,7 @@ def turn_distance(found, expected):
     return np.abs(np.angle(np.exp(1j * (np.asarray(found) - np.asarray(expected)))))
 
 
+@pytest.mark.slow
 @every("guide_angle", [0.0, 0.3, np.pi, -2.2])
 @every("offset", [0.0, 0.13, -0.4])
 @every("assembly", [1, -1])
@@ -85,6 +86,7 @@ def test_extremes_are_in_order_of_angle_and_alternate():
     assert np.all(np.diff(found.value)[:-1] * np.diff(found.value)[1:] < 0)
 
 
+@pytest.mark.slow
 @every("lengths", [(0.1, 0.4, 0.4, 0.1), (0.1, 0.4, 0.1, 0.4)])
 def test_reactions_without_bound_are_maxima(lengths):
     """At the change points that a deltoid and a parallelogram pass."""
@@ -111,6 +113,7 @@ def test_a_constant_has_no_extremes(quantity):
     assert len(ks.extremes(s, quantity)) == 0
 
 
+@pytest.mark.slow
 def test_position_extremes_are_limits_and_dead_centres():
     """Crank 1 m, coupler 0.8 m: it closes where the sine is at most 0.8, with the slider under A at the ends."""
     s = ks.solve(ks.crank_slider(1.0, 0.8), 0.0, crank_speed=1.0)
@@ -178,6 +181,7 @@ def test_torque_extrema_are_matched_by_kind():
         assert maximum == other.maximum[np.flatnonzero(other.value == value)[0]]
 
 
+@pytest.mark.slow
 def test_mean_torque_closes_in_on_the_jumps_of_a_load():
     """Against the same integral parted at the jumps, each piece smooth."""
     solution = loaded(lambda m: np.where(np.abs(np.mod(m.crank_angle, 2 * np.pi) - 1.25) < 0.75, -3e4, 0.0))
@@ -233,6 +237,7 @@ def test_function_extremes_have_six_digits():
     assert line.split()[-1] in ("2.3", "1.7")
 
 
+@pytest.mark.slow
 def test_extremes_say_where_nothing_closes():
     open_press = ks.Mechanism(
         "press",
@@ -252,6 +257,7 @@ def test_extremes_say_where_nothing_closes():
         ks.extremes(never, "O")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.5, 1.5])
 def test_extreme_before_a_jump_at_0_keeps_its_side(speed):
     """The slider turns back there, and its friction with it: the torque is least as the turn ends."""
@@ -315,6 +321,7 @@ def test_all_parts_find_a_narrow_pulse_of_a_function():
     assert ks.drive.flywheel(scene(10.0), 0.02).energy == pytest.approx(work, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_narrow_pulse_of_a_function_of_the_solution_is_found():
     """0.5 deg wide, of a quantity that is constant elsewhere; the function may return a list."""
     solution = ks.solve(ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0)), 0.0, crank_speed=10.0)

@@ -78,6 +78,7 @@ def test_without_friction_nothing_is_lost():
     assert idle.total == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("speed", [30.0, -30.0])
 @pytest.mark.parametrize(("mechanism", "friction"), [(RUBBED, JOINTS), (CAM, CAM_ALL)], ids=["slider", "cam"])
 def test_what_the_drive_gives_is_taken_or_lost(mechanism, friction, speed):
@@ -133,6 +134,7 @@ def test_under_a_motor_means_are_those_over_time():
     assert found.drive == pytest.approx(found.taken + found.total, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_the_table_has_a_row_for_each_joint_and_all():
     s = ks.solve(
         RUBBED, 0.0, crank_speed=30.0, loads=(ks.Gravity(), ks.TorsionDamper(0.1, on="coupler")), friction=JOINTS
@@ -175,6 +177,7 @@ JAMMING = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0))
 GAP = ks.crank_slider(0.3, 0.25, slider=ks.Link(1.0))
 
 
+@pytest.mark.slow
 @every("of", [losses, lambda s: s.efficiency, lambda s: s.losses], ids=["losses", "efficiency", "s.losses"])
 @every(
     ("solution", "error", "words"),
@@ -231,6 +234,7 @@ def test_losses_go_through_pickle_with_their_solution():
     assert found.peaks == s.losses.peaks
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind not in ("slider", "cam", "coupler point")])
 def test_powers_balance_over_the_period(kind):
     scene = Drawn(kind, 5).scene

@@ -167,6 +167,7 @@ def hyperbola(width):
     return lambda angle, designs: 1.0 + np.hypot(2.0 * np.sin(0.5 * (angle - PLACE[designs])), width)
 
 
+@pytest.mark.slow
 @every("width", [0.0, 1e-9, 1e-6, 1e-4, 1e-2])
 @every("text", ["smallest O", "largest O", "mean O", "smallest_at O", "rms O", "range O"])
 def test_size_passing_near_zero_is_found(text, width):
@@ -218,6 +219,7 @@ def solved(loads=(), friction=None, crank=0.05, offset=0.01):
     return ks.solve(pump, np.zeros(1), crank_speed=30.0, loads=loads, friction=friction)
 
 
+@pytest.mark.slow
 def test_smooth_rows_bend_only_at_fine_tolerance():
     x = np.linspace(0.1, 0.3, 1100)
     one, other = (ks.ProcessForce(ks.Table(x, np.sin(20.0 * x), over="travel", back=back)) for back in (None, -x))

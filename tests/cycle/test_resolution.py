@@ -66,6 +66,7 @@ def _no_warnings():
         yield
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", quick([0, 3, 2, 4], 2))
 def test_pulses_wider_than_the_resolution_are_found_everywhere(seed):
     rng = np.random.default_rng(seed)
@@ -84,6 +85,7 @@ def test_pulses_wider_than_the_resolution_are_found_everywhere(seed):
     assert len(plain.check_resolution(np.radians(0.01))) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", [0.0, 0.03])
 def test_jumps_with_the_sense_of_the_stroke_are_found_by_sweeps(offset):
     machine = ks.crank_slider(0.3, 1.1, slider=ks.Link(0.2), guide_offset=offset)
@@ -114,6 +116,7 @@ MIDWAY = scene(pulse(100.525, 0.02))
 """A pulse midway between two samples."""
 
 
+@pytest.mark.slow
 def test_resolution_is_stated_wherever_such_a_function_acts():
     sentence = "every 0.05 deg of the crank; narrower features may be missed"
     solution = NARROW.solve(1)
@@ -160,6 +163,7 @@ def test_reports_of_searches_state_the_resolution_and_warn():
         found.report()
 
 
+@pytest.mark.slow
 def test_finer_look_warns_with_crank_angle_and_remedy():
     text = r"-1e\+06 N at 100.525 deg; declare its `kinks`, give a ks.Table, or a finer `resolution`"
     for act in (

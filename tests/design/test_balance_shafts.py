@@ -70,6 +70,7 @@ def test_unbalances_are_those_of_the_series_of_the_slider():
     assert np.abs([shaft.phase for shaft in found.shafts]) == pytest.approx(np.pi)
 
 
+@pytest.mark.slow
 def test_lanchesters_shafts_of_a_four_in_line():
     """Its second harmonic, 4 m r / lambda along the cylinders nearly, is all that shafts take: the first is zero."""
     parts = []
@@ -87,6 +88,7 @@ def test_lanchesters_shafts_of_a_four_in_line():
     assert largest[1] < 0.02 * largest[0]
 
 
+@pytest.mark.slow
 @every("name", ["offset", "inclined", "V twin", "cam"])
 def test_a_counterweight_on_the_crank_takes_the_forward_circle(name):
     scene = ks.Scene(MACHINES[name], 30.0)

@@ -35,6 +35,7 @@ MASSLESS = ks.crank_slider(0.3, 0.8)
 # Full
 
 
+@pytest.mark.slow
 @every(("speed", "acceleration"), [(10.0, 0.0), (0.0, 30.0), (-7.0, 50.0)])
 @every(
     ("mechanism", "weights"),
@@ -392,6 +393,7 @@ def test_optimum_is_of_the_true_extreme(norm):
         assert fine <= peak(partial(mower(), ratio, crank=Counterweight(mass=5.0))) * (1 + 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("norm", ["mean", "weighted"])
 def test_norm_covers_both_turns_of_a_long_branch(norm):
     links = {name: ks.Link(2.0, (0.1, side)) for name, side in [("crank", 0.03), ("coupler", 0.08), ("rocker", -0.05)]}

@@ -107,6 +107,7 @@ def test_the_contact_table_has_a_row_an_angle():
     assert set(table["side"]) == {"ring"}
 
 
+@pytest.mark.slow
 def test_table_cam_states_its_force_error():
     angle = np.radians(np.arange(360))
     sampled = ks.cams.Sampled(angle, np.round(CAM.radius(angle)[0], 6), noise=0.29e-6)
@@ -254,6 +255,7 @@ def test_without_inertia_nothing_lifts_off():
     assert ks.design.lift_off_speed(ks.solve(light, ANGLES, crank_speed=10.0, loads=PULL)) == np.inf
 
 
+@pytest.mark.slow
 def test_starting_torque_of_springs_weights_friction():
     rest = np.abs(solved(0.0, angles=np.linspace(0, 2 * np.pi, 7201)).balancing_torque)
     assert ks.design.starting_torque(solved()).value == pytest.approx(rest.max(), rel=1e-6)
@@ -279,6 +281,7 @@ def turned(speed, free=0.04):
     return ks.solve(TURNING, ANGLES, crank_speed=speed, loads=ks.Spring(5e3, free, on="follower"))
 
 
+@pytest.mark.slow
 def test_follower_on_turning_cam_lifts_off():
     """M s'' omega^2 + k (s - s0) = 0 with s = 0.05 + 0.01 cos: at the top, 2 omega^2 = 5000 (0.02 / 0.01)."""
     found = ks.design.lift_off_speed(turned(10.0), "contact_force")
@@ -321,6 +324,7 @@ def pulled(speed, place, height, *others):
     return ks.solve(TURNING, 0.0, crank_speed=speed, loads=loads)
 
 
+@pytest.mark.slow
 def test_a_pulse_lifts_off_a_machine_at_rest():
     """The spring presses with 600 to 1000 N; at the top 2 kg need 0.02 omega^2 of it."""
     assert ks.design.lift_off_speed(pulled(10.0, 2.0, 500.0), "contact_force") == pytest.approx(np.sqrt(5e4), rel=1e-9)
@@ -332,6 +336,7 @@ def test_a_pulse_lifts_off_a_machine_at_rest():
         assert_allclose([start, stop], expected, rtol=0, atol=1e-4 * PULSE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damping", [0.0, 50.0])
 def test_a_pulse_lowers_the_speed_of_lift_off(damping):
     """The least root of 0.02 c w^2 + 0.01 b s w = 2e4 (0.04 + 0.01 c) - P(phi) over the turn, c and s cos and sin."""
@@ -357,6 +362,7 @@ def test_a_pulse_is_what_must_be_overcome_to_start():
     assert found.angle == pytest.approx(np.pi / 2, abs=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("place", "height", "sides"), [(2.35, -4e5, ("ring",)), (4.4, 4e5, ("disk", "ring"))])
 def test_a_pulse_presses_the_roller_and_wears_its_bearing(place, height, sides):
     """By Hertz's formula for two radii at 80 000 crank angles."""

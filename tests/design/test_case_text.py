@@ -83,6 +83,7 @@ TWO_TURNS = ks.Table(np.arange(8) * np.pi / 2, np.cos(np.arange(8.0)), period=4 
 DIAGRAM = ks.Table([0.1, 0.2, 0.3], [-900.0, -500.0, 1 / 3], over="travel", back=[0.0, 1.0, 0.0], slider="slider")
 
 
+@pytest.mark.slow
 def test_tables_are_written_to_files_beside_it(tmp_path):
     angle = np.linspace(0, 2 * np.pi, 90, endpoint=False)
     cam = ks.cams.Sampled(angle, 0.1 + 0.01 * np.cos(angle) + 1e-9 * np.cos(40 * angle), noise=1e-9)

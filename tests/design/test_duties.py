@@ -63,6 +63,7 @@ def test_equal_duties_are_one_scene(goal):
     assert twice == pytest.approx(sum(price.values()), rel=1e-5)
 
 
+@pytest.mark.slow
 def test_derivatives_of_a_weighted_output_equal_small_changes():
     problem = DutyProblem(
         read_duties(DUTIES, None, None), VARY, {name: ["O", "balancing_torque"] for name in DUTIES}, 90, "numpy"
@@ -128,6 +129,7 @@ def test_ratios_have_a_reference_in_each_duty():
     assert set(shared.reference.values()) == {plain["idle"]}
 
 
+@pytest.mark.slow
 def test_a_function_of_the_solution_is_a_goal_as_its_text_is():
     """The largest torque at the scene's angles, as a limit of one duty; derivatives are central differences."""
     own = SolutionNumber("mean square", lambda s: float(np.mean(s.balancing_torque**2)), "N**2*m**2")
@@ -175,6 +177,7 @@ def test_a_robust_design_has_the_least_quantile_of_the_weighted_output():
     assert table.iloc[0]["after"] == pytest.approx(quantile(best), rel=0.01)
 
 
+@pytest.mark.slow
 def test_one_duty_alone_and_the_case_file(tmp_path):
     design = found()
     alone = design.duty("cut")

@@ -37,6 +37,7 @@ def pushed(law, speed=SPEED):
     return STIFFNESS * (position - FREE) + MASS * second * speed**2
 
 
+@pytest.mark.slow
 @every("speed", [SPEED, -SPEED, 20.0])
 def test_roller_on_an_eccentric_circle_presses_as_by_hand(speed):
     """Two cylinders of constant radii; the force leans by the pressure angle, sin = e sin(phi) / (r + R)."""
@@ -89,6 +90,7 @@ def test_pressure_between_angles_and_limits():
     assert found.frame()["pressure [Pa]"].tolist() == found.pressure.tolist()
 
 
+@pytest.mark.slow
 def test_a_weak_spring_lifts_off_and_the_face_then_has_no_pressure():
     """Flat: m e omega^2 cos(phi) = k (r + e cos(phi) - free) at the ends."""
     law, weak = ks.laws.cosine(ECCENTRICITY, RADIUS), 300.0
@@ -137,6 +139,7 @@ def test_contact_is_that_of_the_scene_with_the_body_in_it(name):
             assert_allclose(found.contact_force, s.scalar(f"contact_force{own.label}"), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_a_mirrored_machine_has_the_same_contact():
     """Guide, law and offset mirrored, the shaft turned the other way."""
 

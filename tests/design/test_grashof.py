@@ -130,6 +130,7 @@ def assert_intervals_complement(mechanism):
     assert np.all(np.isfinite(s.position("A")))
 
 
+@pytest.mark.slow
 @every("frame_angle", [0.0, 0.1, 2.0, -2.5, np.pi])
 @every("kind", ["double-rocker", "rocker-crank", "triple-rocker"])
 def test_closed_intervals_complement_assembly_errors(kind, frame_angle):
@@ -152,6 +153,7 @@ def test_closed_intervals_of_random_bars_fit_the_gaps(lengths, frame_angle):
 # Change points
 
 
+@pytest.mark.slow
 @every("assembly", [1, -1])
 @every("name", CHANGE_POINTS)
 def test_change_point_results_are_finite_and_warned(name, assembly):

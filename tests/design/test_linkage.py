@@ -20,6 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*near a limit position:kinetost
 # Transmission angle and swing
 
 
+@pytest.mark.slow
 @settings(reproducible, max_examples=20)
 @given(data=st.data())
 def test_transmission_angle_obeys_the_law_of_cosines(data):
@@ -127,6 +128,7 @@ def wrong(found, expected):
 CLOCKWISE = np.linspace(0.0, 2 * np.pi, 361)[:-1] + 0.001
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lengths", [(0.5, 1.0, 2 / 3, np.sqrt(0.75)), (0.25, 1.0, 2 / 3, 0.93)])
 def test_study_agrees_where_its_conditions_hold(lengths):
     found = study(lengths, CLOCKWISE[::5])
@@ -158,6 +160,7 @@ def test_study_fails_where_its_conditions_fail(lengths, closed, coupler_wrong, r
     assert not any(np.any(wrong(a, b)) for a, b in zip(found["library"], found["exact"], strict=True))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("margin", [1e-4, 1e-10])
 def test_both_lose_digits_near_a_toggle(margin):
     """Both: directions eps / sqrt(margin), rates 0.1 eps / margin; acos costs the study twice what the library loses.
@@ -174,6 +177,7 @@ def test_both_lose_digits_near_a_toggle(margin):
         assert rates < 0.1 * allowed / margin
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 @pytest.mark.parametrize("longer", [1e2, 1e6])
 def test_long_rocker_costs_the_study_digits(longer):
@@ -221,6 +225,7 @@ def test_rocker_angle_of_one_angle_is_a_number():
     assert ks.linkage.rocker_angle(solution) == 0.0
 
 
+@pytest.mark.slow
 def test_chain_unit_optimum_keeps_its_pivot():
     """The parallel start puts the rocker's pivot where crank and coupler say, through every step."""
     case = ks.load_case("chain_unit")

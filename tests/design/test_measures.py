@@ -51,6 +51,7 @@ def test_the_largest_part_is_the_reduction(reduction):
     assert_allclose(slopes[:, values.argmax()], -rises if reduction == "smallest" else rises, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_largest_values_of_sectors_are_those_of_dense_angles():
     own = curve(POINT)
     found, _ = own.tops(1.0, 72)

@@ -37,6 +37,7 @@ def test_counterweight_optimum_equals_balancing():
     )
 
 
+@pytest.mark.slow
 def test_limits_hold_at_true_extremes_to_a_billionth():
     solution = bound().scene.solve(90)
     low, high = ks.extremes(solution, "slider_position").range
@@ -52,6 +53,7 @@ def test_a_limit_of_a_ratio_holds_where_the_speed_varies():
     assert found.report().loc[f"{RATIO} [1]", "after"] == pytest.approx(5.0, rel=1e-2)
 
 
+@pytest.mark.slow
 def test_optimum_holds_in_an_independent_solution():
     compared = ks.compare(SAW.solve("plain"), bound().scene.solve(720)).frame()
     assert_allclose(compared.iloc[0]["ratio"], bound().report().loc[f"{RATIO} [1]", "after"], rtol=1e-6)
@@ -70,6 +72,7 @@ def test_each_step_of_a_search_can_be_followed():
     assert steps[0].missed == pytest.approx(max(excess, 0.0), abs=1e-2)
 
 
+@pytest.mark.slow
 def test_any_machine_can_be_improved():
     """A four-bar's rocker is given the pivot that makes its largest reaction least, its swing kept."""
     bars = ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, 0.1), rocker=ks.Link(20.0, 0.15, 0.2))
@@ -226,6 +229,7 @@ def test_search_sees_a_peak_beside_a_kink():
     assert true_value(output, scene) == pytest.approx(truth, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_search_keeps_a_limit_beside_a_kink():
     """Heavier, the slider meets the force with more of its own: the peak of the torque grows with its mass."""
     scene = spiky()
@@ -250,6 +254,7 @@ def rippling(order):
     return ks.Scene(made, 30.0, loads=ks.ProcessForce(push), friction={"guide": ks.GuideFriction(0.1)})
 
 
+@pytest.mark.slow
 def test_fine_ripples_are_resolved():
     scene = rippling(1e5)
     dense = np.linspace(0.0, 2.0 * np.pi, 2_000_001)[5::10]  # crests and troughs of the ripples
@@ -257,6 +262,7 @@ def test_fine_ripples_are_resolved():
     assert true_value(parsed("largest B"), scene) == pytest.approx(truth, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_an_unresolved_output_is_refused():
     scene = rippling(1e6)
     with pytest.raises(ks.DesignError, match="largest B of crank-slider is not resolved even by the finest pieces"):

@@ -28,6 +28,7 @@ def balanced(scene, mass=0.3, travel=0.012, **others):
     return ks.design.torque_balancing_cam(scene, mass=mass, travel=travel, **others)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("variant", "load"), quick(zip(VARIANTS, LOADS, strict=True), 2))
 def test_only_the_mean_torque_remains_with_contact(variant, load):
     scene = drive(variant, load)
@@ -40,6 +41,7 @@ def test_only_the_mean_torque_remains_with_contact(variant, load):
     assert found.scene.solve(at).rate("rocker") == pytest.approx(scene.solve(at).rate("rocker"), rel=1e-14)
 
 
+@pytest.mark.slow
 def test_the_torque_by_power_agrees():
     s = balanced(drive("rho-0.5", "switching")).scene.solve(97)
     assert_allclose(
@@ -47,6 +49,7 @@ def test_the_torque_by_power_agrees():
     )
 
 
+@pytest.mark.slow
 def test_a_load_that_jumps_is_balanced_too():
     def press(motion):
         return np.where(np.cos(motion.crank_angle) > 0, -500.0, 0.0)
@@ -58,6 +61,7 @@ def test_a_load_that_jumps_is_balanced_too():
     assert np.min(np.abs(np.array(found.follower.cam.law.knots) - np.pi / 2)) < 1e-12
 
 
+@pytest.mark.slow
 def test_follower_keeps_travel_and_pressure_angle():
     found = balanced(drive(), pressure_angle=np.radians(25.0), guide_offset=0.002)
     position = found.scene.solve(7200).travel("follower_cam")
@@ -69,11 +73,13 @@ def test_follower_keeps_travel_and_pressure_angle():
     assert_allclose(found.preload, found.spring.stiffness * 0.012, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_the_weight_of_the_follower_is_counted_in():
     up, level = (balanced(drive(), guide_angle=angle) for angle in (np.pi / 2, 0.0))
     assert_allclose(up.spring.free_position - level.spring.free_position, 0.3 * 9.81 / up.spring.stiffness, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_another_speed_unbalances_it():
     found = balanced(drive())
     faster = ks.Scene(found.scene.mechanism, 1.1 * found.scene.crank_speed, loads=found.scene.loads)
@@ -81,6 +87,7 @@ def test_another_speed_unbalances_it():
     assert np.ptp(torque) > 1e-3 * found.uneven[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("given", quick([{"mass": 0.1, "stiffness": 12400.0}, {"mass": 1.7}], 1))
 def test_contact_is_kept_down_to_the_bound(given):
     """The stiff spring needs hardly any preload."""
@@ -146,6 +153,7 @@ def residual(slope, level, mass, stiffness):
     return mass * first**2 / 2 + stiffness * x**2 / 2 + e(ANGLES) - level, mass * second + stiffness * x
 
 
+@pytest.mark.slow
 @every("mass", [1e-6, 0.1, 1.0])
 @every("slope", [np.sin, lambda x: np.sin(x) + 0.8 * np.cos(2 * x), lambda x: np.abs(np.sin(x - 1))])
 def test_energy_is_held_and_the_cam_presses(slope, mass):
@@ -202,6 +210,7 @@ def test_contact_and_angle_are_extremes_of_the_scene(found):
     assert found.lifts_off == ()
 
 
+@pytest.mark.slow
 def test_curvature_is_that_of_the_pitch_curve(found):
     centre = found.follower.disk.curve(np.linspace(0, 2 * np.pi, 200_001))[0]
     step = np.diff(centre)
@@ -210,6 +219,7 @@ def test_curvature_is_that_of_the_pitch_curve(found):
     assert found.curvature_radius.value == pytest.approx(1.0 / bend[convex].max(), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_faster_machine_shows_where_it_lifts_off(found):
     scene = found.scene
     faster = ks.Scene(scene.mechanism, 10.0 * scene.crank_speed, loads=scene.loads).solve(360)

@@ -61,6 +61,7 @@ def test_the_table_lists_what_a_function_may_read():
     assert not {name.partition("(")[0] for name in listed} & OF_THE_LIBRARY
 
 
+@pytest.mark.slow
 @every(("member", "unit", "shape"), [row for row in rows() if row[1] not in ("", "its own")])
 def test_members_have_their_units_and_shapes(member, unit, shape):
     first, larger, slower = motion(), motion(size=2.0), motion(time=2.0)
@@ -81,6 +82,7 @@ def test_the_index_has_the_force_on_the_coupler():
     assert [name for name, path in pages().items() if "! force on the coupler" in text_of(path)] == ["machines/loads"]
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("error")
 def test_cells_agree_with_what_is_found_by_hand(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)

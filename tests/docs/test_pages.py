@@ -82,6 +82,7 @@ def test_the_first_page_counts_its_lines():
     assert written == "fifteen"
 
 
+@pytest.mark.slow
 def test_certainty_page_says_what_its_code_finds(capsys):
     names: dict = {}
     codes = [code for code in code_cells(text_of(PAGES["this_number"])) if "subprocess" not in code]
@@ -172,6 +173,7 @@ def test_examples_are_toml(part):
         assert tomllib.loads(key.example)
 
 
+@pytest.mark.slow
 def test_reference_links_lead_to_sections():
     page = KEYS.page()
     anchors = {part.anchor for part in PARTS}

@@ -78,6 +78,7 @@ def test_ten_pulses_take_their_energy(kind, width, taken):
     assert motion.energy_drift < 1e-12 * energy[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["table", "declared"])
 def test_run_up_pays_for_narrow_pulses(kind):
     pulse = Pulse(math.radians(1.0), -1000.0)
@@ -153,6 +154,7 @@ def test_a_disc_swings_between_two_pulses_as_by_hand(sense):
     assert len(turned) == 5 - (sense > 0.0)
 
 
+@pytest.mark.slow
 def test_time_is_the_integral_of_slowness():
     """Energy by hand, time by adaptive quadrature between the kinks."""
     scene, pulses = drawn(0, "table")
@@ -191,6 +193,7 @@ def test_energy_drift_shows_a_lost_pulse():
     assert taken > 0.8
 
 
+@pytest.mark.slow
 def test_run_up_passes_the_rows_of_a_motor_table():
     speeds = np.linspace(0.0, 130.0, 14)
     motor = ks.drive.Motor.table(speeds, 130.0 + 4.0 * np.sin(speeds) - speeds)

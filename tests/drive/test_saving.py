@@ -38,6 +38,7 @@ def test_what_the_motor_gives_arrives_somewhere(variant, motor):
     assert flow["PointDamper between 'B' and (0, 0.3)"] > 100.0
 
 
+@pytest.mark.slow
 def test_cut_and_rotor_slip_take_their_energies():
     run = running(CUT)
     flow = run.energy_flow
@@ -51,6 +52,7 @@ def test_cut_and_rotor_slip_take_their_energies():
     assert run.energy_per_turn == pytest.approx(shaft, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_stored_energy_is_kinetic_and_potential():
     run = running(variant="cam-cosine", motor=MOTOR)
     held = {part.name: part.swing for part in run.energy_flow.parts}
@@ -86,6 +88,7 @@ def test_loads_of_one_kind_are_numbered():
     )
 
 
+@pytest.mark.slow
 def test_a_period_of_two_turns_counts_each():
     pulse = ks.Table(np.radians([0.0, 100.0, 200.0, 720.0]), [0.0, 900.0, 0.0, 0.0], period=2 * TURN)
     flow = running(ks.Torque(pulse, on="crank"), CUT).energy_flow
@@ -93,6 +96,7 @@ def test_a_period_of_two_turns_counts_each():
     assert flow["ProcessForce on 'slider'"] == pytest.approx(4800.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_parts_are_printed_with_their_units():
     flow = running(CUT).energy_flow
     told = repr(flow).splitlines()
@@ -149,6 +153,7 @@ def test_the_rms_torque_is_the_mean_over_time(pair):
     assert run.rms_motor_torque == pytest.approx(math.sqrt(mean), rel=1e-9)
 
 
+@pytest.mark.slow
 def test_flywheel_for_equal_fluctuation_gives_it(pair):
     compared = ks.compare(*pair)
     reference, balanced = compared.flywheels()
@@ -169,6 +174,7 @@ def test_a_motor_without_air_gap_leaves_its_rows_out():
     assert not frame.index.str.contains("air gap|rotor").any()
 
 
+@pytest.mark.slow
 def test_textbook_running_is_compared_too():
     compared = ks.compare(running_saw("plain", None), running_saw("cam-cosine", None))
     assert compared.fluctuations[0] > 3.0 * compared.fluctuations[1]

@@ -69,6 +69,7 @@ def test_khurmi_gupta_16_13_three_cranks():
     assert run.fluctuation_arithmetic == pytest.approx(0.00101321, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wanted", [0.3, 0.03, 0.002])
 def test_flywheel_under_a_motor_has_the_fluctuation(wanted):
     scene = ks.Scene(SAW, 1.0, loads=(ks.Gravity(), ks.Torque(-700.0, on="crank")))
@@ -135,6 +136,7 @@ def test_torque_swing_is_the_textbook_energy(turns):
         assert found == pytest.approx(energy, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_flywheel_by_swing_is_off_by_the_fluctuation():
     """Swing / (delta omega^2) takes the speed as constant: it is off by a share that falls with delta."""
     pump = ks.Scene(ks.crank_slider(0.05, 0.2, slider=ks.Link(mass=1.0)), 110.0, loads=ks.ProcessForce(-200.0))

@@ -11,6 +11,7 @@ from kinetostatics.drive.savings import running_table, speed_hint
 from support.drives import CUT, DISC_MOTOR, FAN, MOTOR, PUMP, REFERENCE, SAW, TURN, saw
 
 
+@pytest.mark.slow
 def test_speed_and_time_are_integrals():
     run = ks.drive.steady(saw(FAN), MOTOR, 100.0, angles=[0.4, 2.9])
     change = quad(lambda angle: float(np.divide(*run.motion(np.array(angle))[::-1])), 0.4, 2.9, epsrel=1e-13)[0]
@@ -91,6 +92,7 @@ def test_machines_stand_side_by_side_with_units():
         assert table.loc[row, "Kloss"] > 0.0
 
 
+@pytest.mark.slow
 def test_a_motor_without_its_transmission_is_told():
     """At 157 rad/s on the crank of a scene that says 1; with the transmission there is nothing to say."""
     for transmission, told in ((1.0, True), (150.0, False)):
@@ -257,6 +259,7 @@ def test_weak_motor_names_the_missing_torque():
     assert "N m at the crank" in str(caught.value)
 
 
+@pytest.mark.slow
 def test_weak_motor_without_flywheel_stalls():
     peak = ks.Torque(lambda motion: -8000.0 * (0.5 - 0.5 * np.cos(motion.crank_angle)), on="crank")
     small = ks.Scene(ks.crank_slider(0.3, 2.0, crank=ks.Link(0.0, 0.0, 3.0)), 1.0, loads=(peak,))

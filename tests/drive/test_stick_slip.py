@@ -62,6 +62,7 @@ def test_what_sticks_does_not_move():
     assert motion.time.tolist() == [0.0]
 
 
+@pytest.mark.slow
 def test_saw_with_friction_coasts_as_reference_says():
     given = FRICTION_REFERENCE["coasting"]
     motion = ks.drive.coast(RUBBING, given["flywheel"], given["from_angle"], given["from_speed"], "standstill")
@@ -143,12 +144,14 @@ def run(request):
     return ks.drive.steady(scene, motor, flywheel)
 
 
+@pytest.mark.slow
 def test_motor_drives_at_the_true_acceleration(run):
     torque = run.motor.transmission * run.motor_torque - run.flywheel * run.acceleration
     assert np.abs(torque - run.crank_torque).max() < 1e-13 * np.abs(run.crank_torque).max()
     assert run.solution.friction_loss.min() >= 0.0
 
 
+@pytest.mark.slow
 def test_motor_gives_what_loads_and_friction_take(run):
     lost = sum(run.friction_energy_per_turn_at(joint) for joint in run.scene.friction)
     flowing = run.energy_per_turn
@@ -218,6 +221,7 @@ def test_the_rubbing_saw_runs_as_many_digits_say(engine):
     assert run.friction_energy_per_turn == pytest.approx(float(FRICTION_REFERENCE["friction_energy"]), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_friction_that_jams_is_refused_with_its_angles():
     steep = ks.crank_slider(0.1, 0.13, slider=ks.Link(3.0))
     scene = ks.Scene(steep, 1.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(1.2)})
@@ -232,6 +236,7 @@ def test_the_summary_tells_the_power_lost_by_joint(run):
     assert table["lost by friction at guide, mean"] == run.mean_friction_loss_at("guide")
 
 
+@pytest.mark.slow
 def test_friction_and_table_work_without_numba(monkeypatch):
     monkeypatch.setitem(sys.modules, "numba", None)
     work = ks.ProcessForce(ks.Table([0.19, 0.3, 0.33], [0.0, 0.0, -6e3], over="travel", back=[0.0, 0.0, 0.0]))

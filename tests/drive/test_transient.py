@@ -255,6 +255,7 @@ def test_a_motor_against_the_motion_stops_it():
     assert motion.events[-1].name == "standstill"
 
 
+@pytest.mark.slow
 def test_loads_that_cancel_but_for_rounding_are_no_torque():
     """Two saws whose weights balance each other about the crank: 2e-13 N m of 2 kN m are left."""
     twin = ks.load_case("sawframe_2r63_ways").variants["twin"]

@@ -170,6 +170,7 @@ def test_no_bound_where_there_is_no_value():
     assert np.isnan(program([0.1, 1.5])["B"][:, 1]).all()
 
 
+@pytest.mark.slow
 def test_no_bound_after_too_many_operations():
     graph = Graph()
     long = graph.angle().sin()

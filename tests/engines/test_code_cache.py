@@ -51,6 +51,7 @@ def file_modes(path):
     return {item.stat().st_mode & 0o777 for item in path.rglob("*") if item.is_file()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mask", [0o022, 0o002, 0o000, 0o077])
 def test_machine_code_is_found_again_by_its_user_alone(numba, folder, mask):
     before = os.umask(mask)
@@ -65,6 +66,7 @@ def test_machine_code_is_found_again_by_its_user_alone(numba, folder, mask):
     assert file_modes(folder) == {0o600}
 
 
+@pytest.mark.slow
 def test_what_is_not_to_be_kept_leaves_nothing(numba, folder):
     assert load_module(TEXT).twice(2.1) == 4.2
     assert not folder.exists()
@@ -84,6 +86,7 @@ def test_home_is_written_as_a_tilde(numba, folder, tmp_path, monkeypatch):
     assert not (tmp_path / "~").exists()
 
 
+@pytest.mark.slow
 def test_one_warning_for_all_programs_not_kept(numba, folder):
     folder.mkdir(parents=True)
     folder.chmod(0o777)

@@ -133,6 +133,7 @@ def pump(name="level", back=None):
     return ks.Scene(PUMPS[name](), 30.0, loads=[ks.ProcessForce(ks.Table(*ROWS, over="travel", back=back))])
 
 
+@pytest.mark.slow
 @every("name", PUMPS)
 def test_a_steep_force_keeps_to_its_errors(name, flint):
     """One rounding of the travel makes 2.5e-15 of the force, and there are several."""

@@ -313,6 +313,7 @@ def test_what_is_too_small_for_a_double_is_bounded_too():
     assert 0.0 < bound[0] < 1e-270
 
 
+@pytest.mark.slow
 def test_bounds_on_steep_tables_stay_near_the_error(flint):
     scene = ks.load_case("shaper").variants["cutting"].scene
     made = scene.solve(np.radians(np.linspace(177.3, 178.3, 60)))
@@ -412,6 +413,7 @@ def test_a_product_with_an_offset_from_zero_counts_all():
         assert values[1] >= values[0] > 0.0
 
 
+@pytest.mark.slow
 def test_a_bound_does_not_depend_on_other_outputs():
     s = ks.load_case("sawframe_2r63").variants["cam-cosine"].scene.solve(np.linspace(0.1, 6.0, 5))
     alone, together = (
@@ -431,6 +433,7 @@ def test_bounds_take_few_times_the_operations(case, variant):
     assert operations(program.bounded().outputs) <= 4.1 * operations(program.outputs)
 
 
+@pytest.mark.slow
 @every("case, variant", [("chain_unit", "rho-0.5"), ("toggle_press", "idle")])
 def test_values_with_bounds_keep_their_bits(case, variant):
     s = shipped(case).variants[variant].scene.solve(np.linspace(0.0, 6.0, 20))
@@ -483,6 +486,7 @@ SMALL_TURN = 2.0**-27
 """Sine or cosine below which the other is 1 or -1 exactly."""
 
 
+@pytest.mark.slow
 @every("function, exact", [("sin", "sin"), ("cos", "cos"), ("arctan", "atan"), ("exp", "exp"), ("log", "log")])
 def test_functions_of_both_engines_keep_to_their_ulp(flint, function, exact):
     random = np.random.default_rng(1)
@@ -564,6 +568,7 @@ def test_an_offset_that_gives_a_direction_is_bounded(flint, family, seed, tight)
     assert errors(solution(family, seed, 8), tight=tight).wrong == []
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("angle", [1e-100, 1e-121, 1e-150, -1e-150, 1e-300])
 def test_bounds_near_change_points_hold_or_are_inf(flint, angle):

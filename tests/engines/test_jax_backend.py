@@ -56,6 +56,7 @@ def test_jax_gives_nan_only_where_assembly_is_open(jax):
             assert np.array_equal(np.isnan(found[name]), np.isnan(value))
 
 
+@pytest.mark.slow
 def test_xla_keeps_quotients_and_roots_as_recorded(jax):
     """Else (a / b) / c becomes a / (b c) and a / sqrt(b) a product, and bounds would be those of other arithmetic."""
 
@@ -69,6 +70,7 @@ def test_xla_keeps_quotients_and_roots_as_recorded(jax):
         assert np.array_equal(own, exact)
 
 
+@pytest.mark.slow
 def test_the_mode_of_jax_is_as_it_was(jax):
     before = jax.config.jax_enable_x64
     s = diverse()["plain"]
@@ -78,6 +80,7 @@ def test_the_mode_of_jax_is_as_it_was(jax):
         assert jax.config.jax_enable_x64 == before
 
 
+@pytest.mark.slow
 def test_the_device_is_the_first_or_the_one_requested(jax):
     assert jax_backend.device_of() is jax.devices()[0]
     assert jax_backend.device_name(jax_backend.device_of("cpu")) == DOUBLE.device == "cpu"
@@ -155,6 +158,7 @@ def rows(backend, solution, names=("balancing_torque", "O", "A", "slider_acceler
     return backend.run(program, state, leaves)
 
 
+@pytest.mark.slow
 @every("name", [name for name in diverse() if "gas" not in name])
 def test_a_loop_gives_numpy_s_bits_in_single(interpreted, name):
     """Programs run by Python as they are written: what numba makes of them is tested below.
@@ -181,6 +185,7 @@ def test_compiled_loops_give_numpy_s_bits_in_single(monkeypatch):
     assert np.array_equal(rows(COMPILED, turn), rows(NUMPY, turn))
 
 
+@pytest.mark.slow
 @every("name", diverse())
 def test_single_agrees_with_double_to_its_digits(name):
     s = diverse()[name]

@@ -186,6 +186,7 @@ def test_compiled_programs_equal_solve(numba):
     assert largest(cosine - np.cos(ANGLES)) <= 2**-52
 
 
+@pytest.mark.slow
 @every("angles", [ANGLES[7:8], ANGLES[:5]])
 @every("name", SCENES)
 def test_program_on_plain_numbers_equals_the_kernels(name, angles):
@@ -372,6 +373,7 @@ SIZES = st.sampled_from([0.02, 0.05, 0.3, 0.3 * (1 + 1e-12), 2.0, 50.0])
 MASSES = st.sampled_from([0.0, 1e-6, 0.01, 5.0, 400.0])
 
 
+@pytest.mark.slow
 @given(SIZES, SIZES, MASSES, MASSES, SIZES, SIZES, st.sampled_from(["open", "crossed", 1, -1]))
 def test_a_scene_with_hints_always_gets_a_closer_look(crank, length, mass, inertia, centre, offset, assembly):
     assume(inertia == 0.0 or mass > 0.0)
@@ -386,6 +388,7 @@ def test_a_scene_with_hints_always_gets_a_closer_look(crank, length, mass, inert
     assert odd or mechanism.hints == ()
 
 
+@pytest.mark.slow
 @every("name", SCENES)
 def test_ordinary_machines_need_no_closer_look(name):
     s = solve(SCENES[name], SCENES[name].mechanism.turns * [0.3])
@@ -419,6 +422,7 @@ def run(outputs, parameters, tables):
     return [np.broadcast_to(part, ANGLE.shape) for part in found]
 
 
+@pytest.mark.slow
 @every("seed", range(60))
 def test_programs_split_in_two_give_the_same_bits(seed):
     random = np.random.default_rng(seed)

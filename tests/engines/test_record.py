@@ -141,6 +141,7 @@ def values(recorder, output):
     return Program(None, (output,))._by_numbers(s.crank_angle, numbers, (2,))[0]
 
 
+@pytest.mark.slow
 @every("output", [0.0, 2.5])
 @every(
     "name, open_", [("balancing_torque", True), ("guide_force2", True), ("crank_rate", True), ("guide_force", False)]

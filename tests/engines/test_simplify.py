@@ -149,6 +149,7 @@ def test_products_of_equal_structure_are_not_fused(graph):
     assert parts(force - sine * sine) is not None
 
 
+@pytest.mark.slow
 def test_fused_loops_keep_the_zero_of_equal_products(graph):
     pytest.importorskip("numba")
     sine, cosine, one, other, third, fourth = numbers(graph)

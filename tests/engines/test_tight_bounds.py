@@ -151,6 +151,7 @@ def test_an_exact_zero_has_what_may_underflow_as_tight_bound():
     assert np.all((found[1] >= 0.0) & (found[1] < 1e-300))
 
 
+@pytest.mark.slow
 @every(
     "case, variant",
     [("sawframe_2r63", "plain"), ("sawframe_2r63", "cam-cosine"), ("chain_unit", "rho-0.5"), ("toggle_press", "idle")],

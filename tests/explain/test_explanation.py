@@ -159,6 +159,7 @@ def test_text_fits_80_columns_and_has_every_step(told):
         assert f"  {step.symbol} " in told.text
 
 
+@pytest.mark.slow
 def test_broken_formula_is_the_same_formula(told):
     together = re.sub(r"\s+", "", told.text)
     for step in told.steps:
@@ -166,6 +167,7 @@ def test_broken_formula_is_the_same_formula(told):
             assert re.sub(r"\s+", "", f"{step.symbol}={step.formula}=") in together
 
 
+@pytest.mark.slow
 def test_html_is_well_formed_and_asks_for_nothing(told):
     tree = ET.fromstring(told.html.replace(STYLE, ""))
     assert len(tree.findall(".//math")) > 2 * len(told.steps)
@@ -267,6 +269,7 @@ def test_branches_that_pass_change_points(name):
         ask(solution, quantity, 0.7)
 
 
+@pytest.mark.slow
 @every("quantity", ["|O|", "|B|", "|shaking_force|"])
 def test_a_magnitude_is_told_by_its_components(quantity):
     solution = solved(SCENES["plain, everything"], 1.1)
@@ -317,12 +320,14 @@ def test_every_load(name):
     assert len({step.title for step in told.steps}) > 5
 
 
+@pytest.mark.slow
 @every("name", OWN)
 def test_own_groups_and_cams_are_explained(name):
     told = ask(solved(OWN[name][0], 0.7), "balancing_torque", 0.7)
     assert told.steps
 
 
+@pytest.mark.slow
 @every("name", ["function that can be recorded", "function of plain numbers"])
 def test_functions_of_the_users_own(name):
     solution = ks.solve(LOADED.mechanism, 0.7, crank_speed=SPEED, loads=ks.ProcessForce(FORCES[name][0]))

@@ -4,6 +4,7 @@ from itertools import pairwise
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import pytest
 
 import kinetostatics as ks
 from kinetostatics.engines.graph import Graph, Node
@@ -94,6 +95,7 @@ def found(solution, quantity):
     return made.names, lines(made.names, nodes, recorder, solution.dynamics)
 
 
+@pytest.mark.slow
 @every("name", ["circle cam, everything", "four-bar", "six-bar"])
 def test_formulas_are_short_and_name_lines_before_them(name):
     _, told_lines = found(solve(SCENES[name], np.array(0.7)), "balancing_torque")

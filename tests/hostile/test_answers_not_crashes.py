@@ -313,6 +313,7 @@ IDLE = {
 """Loads that take no torque, by what they are; those at pivots may load these."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("mechanism", "load"), quick(IDLE.values(), 5), ids=IDLE)
 def test_idle_loads_take_no_torque(mechanism, load):
     bare, loaded = ks.Scene(mechanism, 10.0), ks.Scene(mechanism, 10.0, loads=load)
@@ -417,6 +418,7 @@ REFUSED = [
 """Calls, what they are given, and what they say to it."""
 
 
+@pytest.mark.slow
 @every(("error", "call", "bad", "words"), REFUSED)
 def test_values_of_a_wrong_kind_are_refused(error, call, bad, words):
     with pytest.raises(error, match=words):

@@ -121,6 +121,7 @@ KINKS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("flywheel", "angle", "speed"), quick(KINKS.values(), 3), ids=KINKS)
 def test_friction_with_one_acceleration_does_not_jam(flywheel, angle, speed):
     scene = ks.Scene(HEAVY, 1.0, loads=ks.Gravity(), friction={"guide": ks.GuideFriction(0.8)})
@@ -130,6 +131,7 @@ def test_friction_with_one_acceleration_does_not_jam(flywheel, angle, speed):
     obeys(motion.at(motion.time[:1]), machine.system, flywheel)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", quick([-4, 0, 1, -1, 4], 3))
 def test_acceleration_at_zero_guide_force_is_found(step):
     force = 14078.237116336823 * (1.0 + step * 2.0**-52)

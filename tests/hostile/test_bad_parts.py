@@ -282,6 +282,7 @@ FORCES = {
 }
 
 
+@pytest.mark.slow
 @every("what", FORCES)
 @every("kind", ["Force", "Torque", "ProcessForce"])
 def test_load_reading_a_force_learns_what_it_may_read(kind, what):

@@ -144,6 +144,7 @@ SHORT = {
 }
 
 
+@pytest.mark.slow
 @every("name", SHORT)
 def test_options_that_cannot_be_are_refused_in_a_line(name, capsys):
     arguments, message = SHORT[name]
@@ -208,6 +209,7 @@ def test_memory_that_runs_out_is_told_in_a_line(saw, monkeypatch, capsys):
 # Whatever the output takes, and whatever stops a command, it ends in a line
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "utf-8"])
 def test_unencodable_output_is_replaced(saw, encoding, monkeypatch):
     raw = io.BytesIO()

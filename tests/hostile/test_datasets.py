@@ -137,6 +137,7 @@ def test_a_damaged_part_is_made_anew(folder, expected, name):
         sweep(folder)
 
 
+@pytest.mark.slow
 def test_a_part_of_another_sweep_is_made_anew(finished, folder, expected, tmp_path):
     sweep(tmp_path / "other", DESIGNS * 1.1)
     shutil.copy(part(tmp_path / "other"), part(folder))
@@ -144,6 +145,7 @@ def test_a_part_of_another_sweep_is_made_anew(finished, folder, expected, tmp_pa
         pd.testing.assert_frame_equal(sweep(folder), expected, check_exact=True)
 
 
+@pytest.mark.slow
 def test_one_warning_names_some_of_many(folder, expected):
     for number in range(3):
         part(folder, number).write_bytes(b"")

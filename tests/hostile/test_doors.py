@@ -170,6 +170,7 @@ CALLS = {
 }
 
 
+@pytest.mark.slow
 @every("name", CALLS)
 def test_calls_that_cannot_be_answered_are_refused(name):
     call, message = CALLS[name]

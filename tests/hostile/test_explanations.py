@@ -32,12 +32,14 @@ def test_no_designs_to_choose_of(design):
         SOLVED.explain("O", 0.7, design)
 
 
+@pytest.mark.slow
 @every("angle", [0.0, math.pi / 2, math.pi, 3 * math.pi / 2, -1e-300, 1e-9, 12345.0, [0.7], np.array([[0.7]])])
 def test_angles_where_much_vanishes(angle):
     told = SOLVED.explain("balancing_torque", angle)
     assert largest_error(told, chained=True) < 1e-14
 
 
+@pytest.mark.slow
 @every(
     "names",
     [("A", "B"), ("phi", "x"), ("x_A", "w"), ("sqrt", "sin"), ("pin of the rod", "a-b"), ("ф", "θ'"), ("1", "2")],
@@ -63,6 +65,7 @@ def test_machines_of_any_size(size):
     assert largest_error(told, chained=True) < 1e-14
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("angle", [0.0, math.pi / 2])
 def test_rounding_over_rounding_is_not_zero(angle):

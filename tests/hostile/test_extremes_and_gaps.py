@@ -61,6 +61,7 @@ def usable_samples(solution, quantity, limits):
     return quantities.values(solution.at(angle[away]), quantity)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "turn"), [*((name, 0.0) for name in CHANGE_POINTS), ("4/1/3/2", 30.0), ("kite", 200.0)]
 )
@@ -93,12 +94,14 @@ def test_mean_torque_beside_change_points_is_right(name):
     assert found == pytest.approx(np.abs(usable_samples(solution, "balancing_torque", limits)).mean(), rel=1e-2)
 
 
+@pytest.mark.slow
 def test_extremes_table_says_once_what_is_left_out():
     _, said = silently(extremes_frame, passing("kite"))
     assert said.count("no value has a correct digit") == 1
     assert "B grows without bound" in said
 
 
+@pytest.mark.slow
 def test_comparisons_name_change_points():
     solution = at_rest(four_bar(*CHANGE_POINTS["kite"][0]))
     compared = ks.compare(at_rest(SAW), solution)
@@ -148,6 +151,7 @@ def swept(function, designs, outputs, **options):
     return ks.sweep(function, pd.DataFrame(designs), outputs, progress=False, **options)
 
 
+@pytest.mark.slow
 @every("coupler, guide", [(0.5, 0.0), (0.99, 77.0), (0.9999999, 0.1)])
 def test_extremes_reach_the_ends_of_closed_intervals(coupler, guide):
     """Under the ends the slider stands at the foot of the crank pin, where its velocity grows without bound."""
@@ -181,6 +185,7 @@ HIDDEN = {
 }
 
 
+@pytest.mark.slow
 @every("short", [1e-5, 1e-7, 1e-9])
 @every("name", HIDDEN)
 def test_gaps_between_samples_are_found(name, short):
@@ -244,6 +249,7 @@ ways = {
 }
 
 
+@pytest.mark.slow
 @every("way", ways)
 @every("name", WRONG)
 def test_what_is_no_force_is_refused_by_name(name, way):
@@ -259,6 +265,7 @@ def test_a_torque_is_told_as_a_torque():
         _ = solution.balancing_torque
 
 
+@pytest.mark.slow
 @every("name", WRONG)
 def test_sweeps_give_what_is_no_force_as_the_reason(name):
     function, _ = WRONG[name]
@@ -300,6 +307,7 @@ def test_load_of_several_turns_names_its_period(turns):
         swept(lambda mass: ks.Scene(SAW, 33.5, 0.0, solution.loads), {"mass": [1.0]}, ["rms O"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns", REPEATING)
 def test_extremes_means_and_sweeps_run_over_the_period(turns):
     load = ks.ProcessForce(REPEATING[turns], period=2 * np.pi * turns)
@@ -347,6 +355,7 @@ def test_unconverged_mean_says_its_accuracy():
     assert "mean torque: it is accurate only to" in said
 
 
+@pytest.mark.slow
 def test_a_noisy_table_is_compared_in_bounded_time():
     rows = np.linspace(0.0, 2 * np.pi, 3600, endpoint=False)
     force = 1e4 * np.random.default_rng(0).normal(size=rows.size)

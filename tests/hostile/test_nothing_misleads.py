@@ -175,6 +175,7 @@ HINTS = {
 }
 
 
+@pytest.mark.slow
 @every("name", HINTS)
 def test_slips_are_hinted_at_the_callers_line(name):
     ask, words = HINTS[name]

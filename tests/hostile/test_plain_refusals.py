@@ -272,6 +272,7 @@ def test_names_that_are_not_there_are_still_refused(cage):
 full = pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
 
 
+@pytest.mark.slow
 @full
 @every(
     "arguments",

@@ -383,6 +383,7 @@ def test_nothing_is_derived_by_the_sense(name):
     assert "sense" not in slopes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "sense"), quick([("crank slider", 1), ("lever", -1), ("roller follower", 1), ("two sliders", -1)], 2)
 )

@@ -419,6 +419,7 @@ def test_samples_of_no_or_too_many_designs_are_refused(kind, count):
         kind({"a": "0..1 m"}, count)
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(strategies.text("0123456789.,eE+-*/^ mkNsg()²\u2009\u2212٣'_", max_size=12))
 def test_any_text_is_one_number_or_refused(text):

@@ -83,6 +83,7 @@ def possible(kind, field, bad):
     return ((kind, field) in TABLES and bad in SHAPES) or ((kind, field) in FUNCTIONS and callable(BAD[bad][0]))
 
 
+@pytest.mark.slow
 @every("kind, field, bad", [(*at, bad) for at in FIELDS for bad in BAD if not possible(*at, bad)])
 def test_every_field_refuses_what_is_no_number_of_it(kind, field, bad):
     """With the name of the field, and what is wrong; a pair is told by its name alone."""
@@ -241,6 +242,7 @@ def group(kind, choose):
     return make[kind]()
 
 
+@pytest.mark.slow
 @every("seed", range(6))
 def test_no_name_is_lost_in_silence(seed):
     random.seed(seed)

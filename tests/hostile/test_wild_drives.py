@@ -175,6 +175,7 @@ RUNNING = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:lsoda")
 @every(("of", "loads", "motor", "flywheel", "words"), RUNNING.values(), ids=RUNNING)
 def test_no_running_is_told_with_what_is_missing(of, loads, motor, flywheel, words):
@@ -348,6 +349,7 @@ EXTREME = {
 }
 
 
+@pytest.mark.slow
 @every(("load", "motor", "speed"), EXTREME.values(), ids=EXTREME)
 def test_what_is_extreme_but_possible_runs(load, motor, speed):
     run = steady(scene(load), motor, 1.0)

@@ -106,6 +106,7 @@ def test_each_group_passes_the_check_of_groups(kind):
         assert report.ok, report
 
 
+@pytest.mark.slow
 def test_engines_find_the_same(interpreted):
     parts = (
         *mechanism("dyad").groups,

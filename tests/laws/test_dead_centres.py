@@ -168,6 +168,7 @@ def test_study_function_fails_near_dead_centres():
     assert 0 < np.sum(square_off) < 0.4 * theirs.size
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "reach"), [("mower", 1e-2), ("offset", 1e-14), ("level", 1e-14)])
 def test_study_function_agrees_elsewhere(kind, reach):
     """Away from the dead centres, and at those of offset and of level guides."""

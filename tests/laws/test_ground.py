@@ -109,6 +109,7 @@ def test_links_on_fixed_pins():
     assert_balanced(s)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", [*KINDS, *RUBBING_FOLLOWERS])
 @every("seed", range(3))
 def test_friction_in_every_joint(kind, seed):

@@ -119,6 +119,7 @@ def test_guide_through_two_points_holds_the_slider(W1, W2):
 # Superposition and balance
 
 
+@pytest.mark.slow
 @every_kind
 def test_forces_superpose(kind):
     """Each load at rest, and inertia without loads, add up to all together."""

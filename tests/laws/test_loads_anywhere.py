@@ -151,6 +151,7 @@ def loaded():
     )
 
 
+@pytest.mark.slow
 def test_load_derivatives_equal_differences():
     scene = ks.Scene(six_bar(), 9.0, -4.0, loaded())
     program = ks.compile(scene, ("balancing_torque", "B"), engine="numpy")
@@ -364,6 +365,7 @@ def test_a_force_on_the_frame_ends_there():
     assert np.array_equal(s.balancing_torque, none.balancing_torque)
 
 
+@pytest.mark.slow
 def test_loads_do_not_shake_the_frame():
     s, none = (ks.solve(six_bar(), ANGLES, crank_speed=9.0, loads=x) for x in (loaded(), ()))
     assert np.array_equal(s.shaking_force, none.shaking_force)

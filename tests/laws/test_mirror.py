@@ -303,6 +303,7 @@ def test_lift_off():
     assert laws.apart(-start_there, stop) < ANGLE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("friction", "speed"), [({}, 10.0), ({"guide": ks.GuideFriction(0.1), "O": ks.PinFriction(0.1, 0.01)}, -10.0)]
 )
@@ -444,6 +445,7 @@ def test_starting_torque_is_of_the_coming_motion(acceleration):
     assert starting.value == pytest.approx(moving.value, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_sweeps_keep_the_sense_of_each_design():
     speeds = pd.DataFrame({"crank_speed": [-12.0, -4.0, 4.0, 12.0]})
     table = ks.sweep(pump(friction=ROUND), speeds, ["mean balancing_torque"], progress=False)

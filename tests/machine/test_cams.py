@@ -111,6 +111,7 @@ def test_sawframe_forces_at_the_singular_angle():
     assert_close(planar(s.reaction("O")), [found["O"] for found in expected], tolerance=1e-12)
 
 
+@pytest.mark.slow
 @every("nearness", [0.03, 1e-6, 1e-12])
 @every("direction", [(-1.0, 0.0), (0.6, -0.8), (0.0, 1.0)])
 def test_circle_close_to_o_is_off_by_rounding(direction, nearness):

@@ -60,6 +60,7 @@ def test_group_on_a_crank_is_checked_as_on_its_own():
     assert ks.check(four_bar("4/1/3/2", "open").groups[0]).ok
 
 
+@pytest.mark.slow
 @each
 def test_motion_passes_change_points_and_closes(name, assembly):
     """Positions by cubic interpolation of what is around them: no side is left, and no velocity jumps."""
@@ -197,6 +198,7 @@ def test_reactions_alone_warn_at_change_points(name, assembly):
         solution.reaction("A")
 
 
+@pytest.mark.slow
 @every("name, places", [("parallelogram", "0, 180"), ("4/1/3/2", "180, 540"), ("deltoid", "0, 360")])
 def test_torque_extremes_stay_finite(name, places):
     solution = ks.Scene(four_bar(name, "open"), SPEED, loads=ks.Gravity()).solve(12)
@@ -253,6 +255,7 @@ def test_both_sides_of_a_change_point_are_exact(name, assembly):
     assert not wrong
 
 
+@pytest.mark.slow
 @every("assembly", SIDES)
 @every("name", [name for name in [*LINKAGES, *LEVERS] if name != "grazing"])
 def test_exact_angle_takes_the_limit_of_both_sides(name, assembly):
@@ -290,6 +293,7 @@ def test_branch_is_the_same_wherever_the_pivot_stands(name, assembly):
             np.testing.assert_allclose(read(solution, *key), right, rtol=0, atol=close)
 
 
+@pytest.mark.slow
 @each
 def test_engines_agree(name, assembly, interpreted):
     scene = ks.Scene(four_bar(name, assembly, (1.2, -0.9)) if name == "near" else four_bar(name, assembly), SPEED)
@@ -430,6 +434,7 @@ def test_second_throw_equals_a_crank_turned_ahead(kind, ahead, assembly):
     np.testing.assert_allclose(made.change_points, both, atol=1e-14)
 
 
+@pytest.mark.slow
 @every("assembly", SIDES)
 @every("name", ["parallelogram", "kite", "deltoid", "rhombus", "near"])
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
@@ -459,6 +464,7 @@ def test_program_keeps_the_radius_of_the_pin():
     np.testing.assert_allclose(values, ks.Scene(other, SPEED, loads=ks.Gravity()).solve(0.3).balancing_torque)
 
 
+@pytest.mark.slow
 @every("at", [(0.0, 0.625), (0.375, 0.5), (-0.625, 0.0)])
 def test_second_throw_enclosures_hold(at):
     pytest.importorskip("flint", reason="python-flint is not installed (extra: precision)")

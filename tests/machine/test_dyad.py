@@ -28,6 +28,7 @@ def solve(made, angles=ANGLES, **options):
     return ks.solve(made, angles, crank_speed=1.0, **options)
 
 
+@pytest.mark.slow
 @every("assembly", [1, -1])
 def test_motion_and_forces_satisfy_the_full_system(assembly):
     s = solve(watt(assembly), loads=[ks.Gravity()])

@@ -10,6 +10,7 @@ from support.every import every
 from support.followers import ANGLES, BODY, KINDS, LAW, SWING, scene
 
 
+@pytest.mark.slow
 @every("kind", [name for name in KINDS if "flat" not in name])
 def test_roller_path_bends_as_the_pitch_curve(kind):
     follower = KINDS[kind]()

@@ -91,6 +91,7 @@ def scene(cam, offset=0.0):
     return ks.Scene(machine, 33.5, loads=[ks.Gravity(), ks.Spring.balancing(600.0, 33.5, 2.0)])
 
 
+@pytest.mark.slow
 def test_programs_sweeps_and_pickles_carry_the_cam():
     import pickle
 

@@ -46,6 +46,7 @@ def dead_centres(pivot):
     return np.array([towards - opening, towards + opening])
 
 
+@pytest.mark.slow
 @every("offset", [0.0, 0.03, -0.02])
 @every("pivot", [SHAPER, WHITWORTH, (0.0, 0.0)])
 def test_motion_is_that_of_the_angles_to_rounding(pivot, offset):

@@ -52,6 +52,7 @@ def pin(at):
     return *at.position, *at.first, *at.second
 
 
+@pytest.mark.slow
 @every("seed", range(20))
 def test_four_bar_equals_its_joint_motion(seed):
     a, b, h, pivot, aside = lengths(seed)
@@ -147,6 +148,7 @@ INCLINED = {
 """A at an inclined pivot, or B at O: joints bear more without end, but the crank does not."""
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("name", INCLINED)
 def test_torque_keeps_digits_that_reactions_lose(flint, name):

@@ -79,6 +79,7 @@ def test_other_side_turns_the_slot_away(offset):
         np.testing.assert_allclose(first.scalar("slot_force"), -second.scalar("slot_force"), rtol=1e-13)
 
 
+@pytest.mark.slow
 @every("assembly", [1, -1, "open", "crossed"])
 @every("offset", [0.0, 0.05])
 def test_groups_of_every_assembly_balance(assembly, offset):
@@ -132,6 +133,7 @@ def test_program_keeps_a_zero_slot_offset():
         kept(0.3, {"slot_offset": 1e-3})
 
 
+@pytest.mark.slow
 @every("excess", [1e-2, 1e-5, 1e-8])
 @every("pivot", [(0.5, 0.49), (-0.5, 0.49), (0.7, 0.0)])
 def test_inclined_branch_keeps_its_digits(flint, pivot, excess):

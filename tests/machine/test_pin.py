@@ -85,6 +85,7 @@ def test_any_link_bears_what_hangs_on_a_pin(link):
     assert s.power_residual < 1e-13
 
 
+@pytest.mark.slow
 @every("link", ["crank", "block"])
 def test_slotted_crank_bears_what_hangs_on_a_pin(link):
     s = solve(

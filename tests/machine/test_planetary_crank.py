@@ -138,6 +138,7 @@ def test_two_counterweights_balance_the_straight_drive_whole(speed):
     assert np.abs(s.balancing_torque).max() < 1e-14 * np.abs(plain.balancing_torque).max()
 
 
+@pytest.mark.slow
 def test_extremes_see_the_change_of_flank():
     found = ks.extremes(ks.Scene(drive(), 60.0, loads=[ks.Gravity()]).solve(90), "A")
     fine = ks.solve(drive(), np.linspace(0, 2 * np.pi, 200_001), crank_speed=60.0, loads=ks.Gravity())

@@ -370,6 +370,7 @@ def test_roller_conforms_to_a_ring_not_a_disk():
     assert 1.0 / ring == pytest.approx(1.0 / 0.03 - 1.0 / 0.33, rel=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rise", quick([ks.laws.cycloidal, ks.laws.harmonic, ks.laws.polynomial], 1))
 def test_a_rise_of_a_tenth_of_a_degree_is_seen(rise):
     """Against 200 000 points of the pitch curve by the law alone, in the axes of the cam, as complex numbers."""

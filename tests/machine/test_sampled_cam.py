@@ -45,6 +45,7 @@ def test_sampled_cam_passes_its_points():
         assert_allclose(far, near, rtol=0, atol=1e-13)
 
 
+@pytest.mark.slow
 def test_sampled_cam_drives_like_its_circle():
     circle, angle, radius = circle_table(360)
     machines = [
@@ -166,6 +167,7 @@ def test_micrometre_rounding_gives_force_to_1e_3():
     assert "forces within 0.0004" in repr(smooth)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:sampled cam. 360 points")
 @every("noise, words", [(8e-8, "less than"), (1e-5, "more than")])
 def test_noise_unlike_that_of_the_table_is_warned_of(noise, words):
@@ -174,6 +176,7 @@ def test_noise_unlike_that_of_the_table_is_warned_of(noise, words):
         ks.cams.Sampled(*table, noise=noise)
 
 
+@pytest.mark.slow
 def test_traced_sampled_cam_is_refused(double):
     mechanism = ks.cam_crank_slider(ks.cams.Sampled(*rounded(LAW, 360, 1e-9)), 2.0, slider=ks.Link(600.0))
     with pytest.raises(ks.NotGivenError, match=r"sampled cam.*ks.compile"):

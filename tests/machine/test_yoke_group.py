@@ -57,6 +57,7 @@ def test_yoke_shaking_force_is_one_harmonic():
     assert np.max(np.abs(spectrum)) < 1e-14 * 5.0 * R * SPEED**2
 
 
+@pytest.mark.slow
 @every("slot", [0.01, 1.2, 2.0, 3.1, -1.0, 4.0])
 @every("tilt, offset", [(0.0, 0.0), (0.4, 0.03), (np.pi / 2, -0.02), (2.5, 0.0)])
 def test_motion_is_of_intersecting_lines(slot, tilt, offset):
@@ -71,6 +72,7 @@ def test_motion_is_of_intersecting_lines(slot, tilt, offset):
             assert np.max(np.abs(x + 1j * y - expected)) < 8 * EPSILON * size, order
 
 
+@pytest.mark.slow
 def test_a_spring_that_is_nearly_free_keeps_its_digits():
     """The pin is within 1e-12 m of the free position, where the coordinate alone is good to 1e-16 m."""
     mean = 1.0
@@ -106,6 +108,7 @@ def test_what_no_yoke_can_have_is_refused(field, value):
         ks.YokeGroup(**{field: value})
 
 
+@pytest.mark.slow
 def test_a_yoke_found_in_another_way_bears_the_same():
     """A series of one harmonic is the yoke itself."""
     made = ks.scotch_yoke(R, guide_angle=0.3, guide_offset=0.01, slot_angle=1.1, slider=ks.Link(2.0, (0.1, 0.2), 0.1))

@@ -121,6 +121,7 @@ def test_undercutting_roller_is_refused():
         ks.extremes(solved(25.0, loads, **kind, angles=ANGLES[~cut]), "contact_pressure")
 
 
+@pytest.mark.slow
 def test_sweeps_give_true_pressures_or_undercutting():
     scene = ks.Scene(rolled(), 25.0, loads=LOADS)
     table = ks.sweep(
@@ -187,6 +188,7 @@ def cam():
     return ks.Scene(mechanism, 33.0, -5.0, (ks.Gravity(), ks.Spring(6e5, 2.0)))
 
 
+@pytest.mark.slow
 @every("scene", [slider(), bar(), cam()], ids=["slider", "four-bar", "cam"])
 @every("engine", ["numpy", "kernels"])
 def test_reduced_inertia_makes_up_the_torque(scene, engine):

@@ -40,6 +40,7 @@ def test_forces_on_every_link_are_in_equilibrium(name):
     assert imbalance(SCENES[name].solve(ANGLES)) < CLOSED
 
 
+@pytest.mark.slow
 @every("kind", followers.KINDS)
 def test_forces_on_followers_and_their_cams_are_in_equilibrium(kind):
     assert imbalance(followers.scene(followers.KINDS[kind]()).solve(followers.ANGLES)) < CLOSED

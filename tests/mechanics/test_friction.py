@@ -33,6 +33,7 @@ def rubbed(friction=JOINTS, **drive):
     return ks.solve(RUBBED, TURN, friction=friction, **DRIVE | drive)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", quick([*KINDS, *FOLLOWERS], 3))
 def test_forces_obey_newton_for_all_bodies(kind):
     difference, solution = differences(kind, 1)
@@ -217,6 +218,7 @@ def test_derivatives_are_those_of_differences():
             assert np.abs((up - down) / (2 * step) - found[name][path]).max() < 1e-6 * size
 
 
+@pytest.mark.slow
 def test_program_takes_other_coefficients():
     program = ks.compile(SCENE, "friction_loss", engine="numpy")
     two = np.array([[0.05], [0.2]])
@@ -328,6 +330,7 @@ def parallelogram(angles, assembly):
     return ks.solve(four_bar, angles, crank_speed=10.0, loads=ks.Gravity(), friction=LEGS)
 
 
+@pytest.mark.slow
 @every("angle, assembly", [(0.7, "open"), (2.2, "crossed")])
 def test_friction_follows_the_side_of_a_change_point(angle, assembly):
     """The same posture by its sign, off the change points: an assembly that keeps to one side passes none."""

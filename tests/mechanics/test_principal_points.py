@@ -55,6 +55,7 @@ def external(s):
 # Shaking force
 
 
+@pytest.mark.slow
 @each_kind
 def test_shaking_force_is_minus_mass_acceleration(kind):
     """Pins O and O2, guide, cam along the inward normal of its pitch curve; spring, process force and weights."""

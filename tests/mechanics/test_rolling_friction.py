@@ -22,6 +22,7 @@ def rolling_follower(speed=12.0, mu=0.1, arm=1e-3, kind="roller, offset"):
     return ks.Scene(scene.mechanism, speed, scene.crank_acceleration, scene.loads, {contact: made}), contact
 
 
+@pytest.mark.slow
 @every("mu", [0.0, 0.003, 0.2])
 @every("speed", [33.5, -33.5])
 def test_moments_about_the_roller_are_in_balance(mu, speed):
@@ -40,6 +41,7 @@ def test_arm_of_zero_changes_no_bit():
         assert np.array_equal(read(s), read(plain))
 
 
+@pytest.mark.slow
 @every("kind", ["roller, offset", "swinging, other side"])
 @every("speed", [12.0, -12.0])
 def test_rolling_alone_loses_its_moment_times_the_spin(kind, speed):
@@ -95,6 +97,7 @@ def test_bounds_cover_the_rounding(flint):
         assert (bound < 1e-10 * np.abs(s.balancing_torque).max()).all()
 
 
+@pytest.mark.slow
 def test_explanation_names_the_arm():
     assert "rolling_arm" in ROLLING.solve(1.0).explain("friction_loss", 1.0).text
 
@@ -102,6 +105,7 @@ def test_explanation_names_the_arm():
 # Sweeps, losses, drive, ground
 
 
+@pytest.mark.slow
 def test_sweep_of_arms():
     table = ks.sweep(SAW, pd.DataFrame({ARM: [0.0, 5e-4]}), "mean cam_friction_loss", angles=360, progress=False)
     lost = table["mean cam_friction_loss [W]"]
@@ -109,6 +113,7 @@ def test_sweep_of_arms():
     assert lost[1] > 2.0 * lost[0]
 
 
+@pytest.mark.slow
 def test_steady_running_pays_for_the_rolling():
     motor = ks.drive.Motor.linear(2000.0, 34.0)
     without, rolls = (

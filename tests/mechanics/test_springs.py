@@ -91,6 +91,7 @@ def test_forces_are_those_of_inertia_and_springs_apart(name, given, acceleration
     assert np.max(np.abs(error)) < 1e-13 * run.largest_torque_term
 
 
+@pytest.mark.slow
 @every("name", [name for name in MACHINES if name not in APART])
 def test_inertia_and_a_balancing_spring_are_one_force(name):
     run = loaded(MACHINES[name], "balancing").dynamics

@@ -161,6 +161,7 @@ CHANGES = [
 ]
 
 
+@pytest.mark.slow
 @every(("before", "after", "names"), CHANGES)
 def test_a_change_is_seen_wherever_it_is(before, after, names):
     assert before in BASE

@@ -144,6 +144,7 @@ def test_results_of_shipped_cases_are_the_same_in_other_units(name):
         assert_converted(s.frame(), s.frame(EXAMPLES), EXAMPLES)
 
 
+@pytest.mark.slow
 def test_a_batch_of_designs_and_ratios_keep_their_numbers():
     batch = ks.solve(ks.crank_slider(np.array([[0.05], [0.06]]), 0.2), [0.1, 0.2], crank_speed=1.0).frame(
         {"length": "mm"}

@@ -98,6 +98,7 @@ def test_compare_prints_published_figures_in_brackets(capsys):
     assert sum(line.startswith("power balance") for line in lines) == 1
 
 
+@pytest.mark.slow
 def test_run_lists_reactions_and_rates_of_a_four_bar(capsys):
     assert main(["run", "chain_unit", "--variant", "free-start"]) == 0
     printed = capsys.readouterr().out

@@ -33,6 +33,7 @@ def ranges(offset, case):
     return of(0), of(1)
 
 
+@pytest.mark.slow
 @every(
     ("offset", "case", "along", "across"),
     [
@@ -49,6 +50,7 @@ def test_extent_of_the_path_in_mm(offset, case, along, across):
     assert found == [along, across]
 
 
+@pytest.mark.slow
 def test_case_1_moves_along_a_line_parallel_to_the_guide():
     """By similar triangles S divides the way from O to B: its line is h1 / L_OA times as far below O as the guide."""
     for offset in (0, 20):

@@ -48,6 +48,7 @@ def test_data_have_17_digits_bounds_and_units(check):
     assert [text for folder in check.folders() for text in check.faults(folder)] == []
 
 
+@pytest.mark.slow
 def test_wrong_results_are_found_whatever_is_wrong(check):
     """Every kind of machine: each number off, missing, in another unit, from the other body."""
     firsts = [folder for folder in check.folders() if folder.parent.name == "machines" and folder.name.endswith("-1")]
@@ -74,6 +75,7 @@ def test_bad_data_is_found_in_the_data_itself(check, tmp_path):
     assert "is not across the guide" in told(place, rows[3][place].replace("1", "2"))[-1]
 
 
+@pytest.mark.slow
 def test_library_agrees_with_all_reference_data(check):
     """The scenes are made from case.json alone, for slider, lever and yoke: what it tells is enough."""
     for name in ("slider-1", "slider-2", "slider-3", "lever-1", "lever-2", "yoke-1", "yoke-2"):
@@ -149,6 +151,7 @@ def test_data_made_anew_is_the_same(folder, check, tmp_path):
             assert texts == table[name], name
 
 
+@pytest.mark.slow
 def test_the_checker_runs_without_the_library(tmp_path):
     """As another project would run it: on its own results, in a Python that has no packages."""
     bad = tmp_path / "bad.csv"

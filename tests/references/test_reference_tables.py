@@ -186,6 +186,7 @@ def test_plain_torque_extremes_are_the_documented_ones():
     np.testing.assert_allclose(found, [40579, -33564, 33305, -40237], rtol=0, atol=0.52)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("variant", "documented"), [("cosine", 6.778), ("circle", 6.081)])
 def test_mean_torque_ratio(variant, documented):
     """Published: 6.77, from a wrong sign (`studies/methods/test_papers`); 6.778 comes near it by coincidence."""
@@ -207,6 +208,7 @@ def test_torque_extremum_ratios_by_crank_angle(variant, documented):
     assert np.round(found, 2).tolist() == documented
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("variant", "documented"), [("cosine", 14.57), ("circle", 12.87)])
 def test_ratio_of_largest_support_reactions(variant, documented):
     """Published: about 12. Plain: 286.8 kN."""
@@ -220,6 +222,7 @@ def test_ratio_of_largest_support_reactions(variant, documented):
     assert round(float(found.peak_reactions("O")[0]) / 1e3, 1) == 286.8
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("variant", "documented"), [("cosine", 54.9), ("circle", 49.9)])
 def test_largest_cam_force(variant, documented):
     """Published: almost 5 tf."""

@@ -126,6 +126,7 @@ def dense():
     return follower().at(DENSE)
 
 
+@pytest.mark.slow
 @every("joint, power", [(joint, power) for joint in FOUR_BAR for power in (3.0, 10 / 3)])
 def test_dense_sums_of_a_four_bar(joint, power):
     s = dense()
@@ -164,17 +165,20 @@ def assert_alike(one, other):
     assert next(values) == pytest.approx(next(values), rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.slow
 @every("joint", ["O", "A", "B"])
 def test_both_senses_of_rotation_wear_alike(joint):
     assert_alike(by_ratings(pump(20.0), joint), by_ratings(pump(-20.0), joint))
 
 
+@pytest.mark.slow
 @every("joint", ["O", "A", "B", "roller"])
 def test_the_mirror_image_wears_alike(joint):
     scene = ks.Scene.of(follower())
     assert_alike(by_ratings(scene.solve(8), joint), by_ratings(mirror.mirrored(scene).solve(8), joint))
 
 
+@pytest.mark.slow
 @every("exponent", [1.0, 3.0, 10 / 3])
 def test_speed_and_ratings(exponent):
     """Loads of inertia grow with the square of the speed, life with the power of the rating over them."""
@@ -275,6 +279,7 @@ def test_a_pin_without_load_lives_on():
     assert found.ring_loads == {}
 
 
+@pytest.mark.slow
 def test_a_pin_that_never_turns():
     """Two bars on pins of one link turn with it: as a plain bearing it has pressure, but no pv."""
     parts = ks.Pin(on="crank", at=(0.02, 0.1), name="C"), ks.Dyad(0.3, 0.4, on=("A", "C"), dyad1=ks.Link(1.0, 0.1))

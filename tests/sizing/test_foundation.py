@@ -42,6 +42,7 @@ def curves(block, angle, derivative=0):
 # Published numbers
 
 
+@pytest.mark.slow
 def test_block_of_80_kg():
     """1.8 kg of 80 kg moves by a 40 mm crank, with a coupler so long that the motion is harmonic."""
     machine = ks.crank_slider(0.04, 4000.0, slider=ks.Link(1.8))
@@ -157,6 +158,7 @@ def test_error_of_one_way_coupling_falls_with_the_share_of_the_moving_mass():
 # Laws
 
 
+@pytest.mark.slow
 def test_square_wave_has_the_known_harmonics_and_a_note():
     """Every odd harmonic is 4 F / (pi n); of a jump the last harmonics of the velocity count."""
     square = ks.ProcessForce(lambda q: 100.0 * np.sign(np.sin(q.crank_angle)))
@@ -171,12 +173,14 @@ def test_square_wave_has_the_known_harmonics_and_a_note():
     assert block.v_rms == pytest.approx(ramp / math.sqrt(3.0), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_both_senses_of_rotation_shake_alike():
     way, back = (ks.sizing.mount(pump(speed), **PUMP) for speed in (75.4, -75.4))
     assert back.numbers == pytest.approx(way.numbers, rel=1e-12, nan_ok=True)
     assert np.allclose(back.harmonics()["lag [deg]"], way.harmonics()["lag [deg]"], atol=1e-9, equal_nan=True)
 
 
+@pytest.mark.slow
 def test_velocity_follows_the_scale_of_masses_and_speeds():
     """Twice all masses and springs: the same motion, twice the load. Twice the speed and sqrt(K): the same travel."""
     one = ks.sizing.mount(pump(), **PUMP)
@@ -186,6 +190,7 @@ def test_velocity_follows_the_scale_of_masses_and_speeds():
     assert (fast.travel_x, fast.ground_x) == pytest.approx((one.travel_x, 4.0 * one.ground_x), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_machine_turned_by_a_right_angle_shakes_the_block_upward():
     lying = ks.sizing.mount(pump(), mass=75.0, stiffness=[220e3, 220e3], damping=0.02)
     machine = ks.crank_slider(0.05, 0.16, guide_angle=np.pi / 2, slider=ks.Link(1.5))
@@ -196,6 +201,7 @@ def test_a_machine_turned_by_a_right_angle_shakes_the_block_upward():
     assert upright.v_rms == pytest.approx(lying.v_rms, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_quantities_with_units_are_converted():
     plain = ks.sizing.mount(rich(), mass=4e3, inertia=900.0, stiffness=[5e4, 9e4, 4e3], damping=0.3, centre=(0.1, -0.3))
     stiffness = [UNITS("50 N/mm"), UNITS("90 kN/m"), UNITS("4 kN m/rad")]
@@ -203,6 +209,7 @@ def test_quantities_with_units_are_converted():
     assert ks.sizing.mount(rich(), stiffness=stiffness, damping=0.3, **given).numbers == pytest.approx(plain.numbers)
 
 
+@pytest.mark.slow
 def test_held_directions_pass_their_load_on():
     s = rich()
     block = ks.sizing.mount(s, mass=900.0, stiffness=5e4, damping=0.1)
@@ -212,6 +219,7 @@ def test_held_directions_pass_their_load_on():
     assert block.ground_y == pytest.approx(np.abs(force - force[:-1].mean()).max(), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_stiff_springs_pass_the_load_of_a_fixed_frame_and_soft_ones_none():
     stiff = ks.sizing.mount(rich(), mass=900.0, stiffness=[9e12, 9e12], damping=0.0)
     soft = ks.sizing.mount(rich(), mass=900.0, stiffness=[9e-3, 9e-3], damping=0.0)
@@ -219,6 +227,7 @@ def test_stiff_springs_pass_the_load_of_a_fixed_frame_and_soft_ones_none():
     assert max(soft.transmissibility_x, soft.transmissibility_y) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_load_over_two_turns_has_half_orders():
     load = ks.ProcessForce(lambda q: 50.0 * np.sin(0.5 * q.crank_angle), period=2 * TURN)
     s = ks.solve(ks.crank_slider(0.05, 0.16), 0.0, crank_speed=75.4, loads=load)
@@ -227,6 +236,7 @@ def test_a_load_over_two_turns_has_half_orders():
     assert abs(block.force[0, 0]) == pytest.approx(50.0, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_block_for_keeps_the_velocity():
     s = rich()
     block = ks.sizing.block_for(s, v_rms=2e-3, tuning=0.4, damping=0.05)
@@ -266,6 +276,7 @@ REFUSED = [
 ]
 
 
+@pytest.mark.slow
 @every("wrong, message", REFUSED)
 def test_wrong_numbers_are_refused(wrong, message):
     with pytest.raises(ks.ParameterError, match=message):
@@ -298,6 +309,7 @@ def test_machines_without_periodic_vibration_are_refused(machine, message):
         ks.sizing.block_for(machine(), v_rms=1e-3)
 
 
+@pytest.mark.slow
 @every(
     "wrong, message",
     [
@@ -320,6 +332,7 @@ def test_a_yoke_has_one_harmonic_and_no_resonance_with_others():
     assert block.displacement[0, 0] == pytest.approx(2.0 * 0.05 * 100.0 / (50.0 * (400.0 - 100.0)), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_a_machine_without_mass_does_not_shake():
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -107,6 +107,7 @@ def test_processes_and_a_folder_give_the_same(tmp_path):
         ks.sweep(SCENE, designs, [other.number("shear_stress"), outputs[1]], chunk=2, folder=tmp_path / "kept")
 
 
+@pytest.mark.slow
 def test_a_tolerance_study_spreads_the_number_of_a_part():
     output = PIN.number("shear_stress")
     found = ks.tolerances(SCENE, [output], {"slider.mass": "500..600 kg"}, count=8, progress=False)
@@ -134,6 +135,7 @@ def test_robust_searches_refuse_numbers_of_parts():
         ks.design.optimise(SCENE, {"slider.mass": (400.0, 600.0)}, PIN.number("shear_stress"), robust=spread)
 
 
+@pytest.mark.slow
 def test_a_case_has_the_parts_of_its_file(case):
     table = case.sizing_table()
     assert np.isclose(table.loc[("pin_B", "shear_stress"), "plain"], shear_stress_at_320(case), rtol=1e-12)
@@ -147,6 +149,7 @@ def shear_stress_at_320(case):
     return ks.extremes(case.solve("plain"), "B").largest / (2.0 * np.pi / 4.0 * 0.08**2)
 
 
+@pytest.mark.slow
 def test_a_part_that_fails_with_a_variant_leaves_the_others(tmp_path):
     text = CASE.replace('masses = [["1 m", "88.5 kg"]]', 'masses = [["1 m", "150 kg"]]')
     table = ks.load_case(case_file(tmp_path, text)).sizing_table(["plain"])
@@ -155,6 +158,7 @@ def test_a_part_that_fails_with_a_variant_leaves_the_others(tmp_path):
     assert any(note.startswith("plain: ") and "inertia" in note for note in table.attrs["notes"]["rod"])
 
 
+@pytest.mark.slow
 def test_a_limit_in_hours_is_kept_in_hours():
     bearing = ks.sizing.Part("main", "bearing", {"joint": "O", "capacity": 1e6, "static_capacity": 1e6})
     assert bearing.limit("life_hours >= 20000 h").value == 20000.0
@@ -185,6 +189,7 @@ def test_the_command_line_sweeps_numbers_of_parts(tmp_path, capsys):
     assert "part is 'pinB'" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_designs_of_a_case_may_limit_its_parts(tmp_path):
     design = """
 [design.best]
@@ -232,6 +237,7 @@ WRONG = {
 }
 
 
+@pytest.mark.slow
 @every("name", WRONG)
 def test_a_wrong_table_is_named_with_its_key(name, tmp_path):
     before, after, told = WRONG[name]

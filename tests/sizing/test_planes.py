@@ -146,6 +146,7 @@ def cross(arm, force):
     return arm[0] * force[1] - arm[1] * force[0]
 
 
+@pytest.mark.slow
 def test_bearings_carry_the_reaction_and_its_moment():
     left, right = (MIXED.reaction("O", at=side) for side in ("left", "right"))
     scale = abs(MIXED.reaction("O")).max()
@@ -154,6 +155,7 @@ def test_bearings_carry_the_reaction_and_its_moment():
     np.testing.assert_allclose(-0.45 * left + 0.5 * right, -moment, rtol=0, atol=1e-13 * scale)
 
 
+@pytest.mark.slow
 def test_torque_in_the_shaft_moves_the_throws_beyond():
     planes = {"coupler": -0.3, "block5": -0.1, "lever4": 0.15, "coupler2": 0.3, "follower6": 0.4}
     assert set(MIXED.mechanism.on_shaft) == planes.keys()
@@ -193,6 +195,7 @@ def test_planes_change_nothing_else():
     assert not {"rocking_moment", "O left"} & set(s.frame().columns.str.partition(" [")[0])
 
 
+@pytest.mark.slow
 def test_friction_stays_in_the_sum():
     s = MIXED.mechanism
     friction = {"O": ks.PinFriction(0.1, 0.02), "A": ks.PinFriction(0.1, 0.02), "guide": ks.GuideFriction(0.1)}
@@ -218,6 +221,7 @@ def two(arm=0.04, reciprocating=0.0, planes=(-0.35, 0.4), **made):
     return ks.balancing.in_two_planes(in_line(**made), left=left, right=right, reciprocating=reciprocating)
 
 
+@pytest.mark.slow
 @every("angles", [FOUR, FOUR[:3], FOUR[:1]])
 def test_two_counterweights_balance_rotating_masses(angles):
     rotating = {"coupler": ks.Link(1.3), "slider": ks.Link()}  # all mass on the crank pins
@@ -294,6 +298,7 @@ def test_extremes_sweeps_programs_and_cases(tmp_path):
     assert "rocking" in s.explain("rocking_moment", 0.3).text
 
 
+@pytest.mark.slow
 def test_hodograph_of_the_couple_has_its_largest_value():
     s = ks.Scene(in_line(), SPEED).solve(36)
     ax = ks.plots.rocking_moment(s)

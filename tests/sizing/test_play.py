@@ -269,6 +269,7 @@ def test_motion_that_cannot_be_followed_is_refused(monkeypatch):
         ks.sizing.contact_loss(pump(), "B", 1e-5)
 
 
+@pytest.mark.slow
 def test_play_without_landing_is_refused():
     with pytest.raises(ks.ParameterError, match="does not land within a period"):
         ks.sizing.contact_loss(pump(coupler=ks.Link()), "B", 100.0)
@@ -277,6 +278,7 @@ def test_play_without_landing_is_refused():
 # The figure
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("coupler", [COUPLER, ks.Link()])
 def test_the_figure_shows_forces_index_and_flights(coupler):
     found = ks.sizing.contact_loss(pump(coupler=coupler), "B", 1e-5, damping=0.5)

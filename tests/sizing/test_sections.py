@@ -199,6 +199,7 @@ def test_force_on_a_bar_at_rest():
     assert found.largest_moment[:2] == pytest.approx((37.5, 0.5))  # the coupler lies across the force at 0 deg
 
 
+@pytest.mark.slow
 def test_forces_grow_with_the_square_of_speed_whichever_way_it_turns():
     one, two = (solved(ODD, speed).sections("coupler", ODD) for speed in (SPEED, -2 * SPEED))
     assert two.bending_moment == pytest.approx(4 * one.bending_moment, rel=1e-12, abs=1e-8)
@@ -235,6 +236,7 @@ def test_forces_that_grow_at_a_change_point_are_infinite_with_a_warning():
     assert found.largest_moment.value == pytest.approx(2.0 * (9.81 + 0.1 * 10.0**2) * 0.4 / 8)
 
 
+@pytest.mark.slow
 def test_change_points_make_a_pin_infinite_with_a_warning_and_leave_the_shaft_its_frequency():
     with pytest.warns(ks.ConditionWarning, match="assembly .1 keeps to its side"):
         s = ks.Scene(change_points.four_bar("deltoid", 1), 10.0).solve(24)
@@ -350,6 +352,7 @@ def test_deflection_under_a_force_in_the_middle():
     assert (found.departure, found.natural_frequency) == (0.0, np.inf)
 
 
+@pytest.mark.slow
 def test_departure_is_the_steady_vibration_of_an_oscillator():
     """Q'' + p^2 q = p^2 w(t), started in its periodic state and integrated over a turn, comes back to it."""
     s, natural = solved(), 5.3 * SPEED
@@ -396,6 +399,7 @@ def test_twist_of_a_shaft():
     assert found.natural_frequency == pytest.approx(np.sqrt(stiffness / s.reduced_inertia.mean()), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_needs_reports_rigidity():
     shaft = {"length": 0.5, "polar_moment": 2e-5, "shear_modulus": 79e9}
     found = ks.needs(solved(), "O", within=0.05, progress=False, bars={"coupler": SAW}, shaft=shaft)

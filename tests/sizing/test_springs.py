@@ -46,6 +46,7 @@ def saw():
     return shipped("sawframe_2r63").variants["cam-circle"].scene
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("stress", "third", "exact"), [
     (600e6, ("1571 kg", "1262 kN/m"), ("1734 kg", "1393 kN/m")),
     (500e6, ("3672 kg", "2048 kN/m"), ("5561 kg", "3102 kN/m")),
@@ -87,6 +88,7 @@ def test_balance_of_the_saw_is_a_fixpoint(saw):
     assert found.surge_excitation == pytest.approx(ks.sizing.spring_surge(sprung.solve(4)).excitation, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_a_mirrored_saw_has_the_same_springs():
     def sized(angle, sense):
         spring = ks.Spring.balancing(2.0, 60.0, free_position=0.31)
@@ -176,6 +178,7 @@ def test_fatigue_safety_ends_on_the_limit(found):
     assert excess(0.99 * found.fatigue_safety) < 0.0
 
 
+@pytest.mark.slow
 def test_buckling_has_the_textbook_limit():
     """Shigley, section 10-2: steel between plates is stable if L0 < 5.26 D; at the limit it buckles at 0.81 L0."""
     springs = (replace(norton(), active_turns=float(turns)) for turns in np.linspace(5.0, 30.0, 1000))

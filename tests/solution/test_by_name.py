@@ -37,6 +37,7 @@ MACHINES = {
 }
 
 
+@pytest.mark.slow
 @every("name", MACHINES)
 def test_every_listed_name_has_values_and_every_column_a_name(name):
     s = MACHINES[name]()
@@ -70,6 +71,7 @@ def test_a_name_reads_as_its_attribute_or_method(s, name, read):
     np.testing.assert_array_equal(s[name], read(s))
 
 
+@pytest.mark.slow
 def test_a_running_has_names_of_its_drive_and_of_its_solution(run):
     assert {"motor_torque", "time", "guide_force", "B_x [m]"} < set(run.quantities)
     assert all(run[name] is not None for name in run.quantities)

@@ -229,6 +229,7 @@ def test_products_with_common_input_are_all_seen(count, signs):
         assert told.second == pytest.approx(np.sqrt(2.0) * 0.25)
 
 
+@pytest.mark.slow
 @every("count", (4, 5, 7))
 def test_products_without_common_input_are_all_seen(count):
     """As the moments of two masses that balance each other, equally uncertain."""

@@ -259,6 +259,7 @@ def test_numbers_are_those_of_extremes_and_means():
     assert numbers[4, 0] == pytest.approx(np.ptp(ks.extremes(at, "guide_force").range), rel=1e-8)
 
 
+@pytest.mark.slow
 def test_designs_have_the_numbers_that_they_have_alone():
     crank, mass = np.array([[0.03], [0.05], [0.06]]), np.array([[1.0], [2.0], [0.1]])
     together, _ = PiecewiseTurns.of(pump(crank, mass), OUTPUTS, 192).estimated(OUTPUTS)

@@ -217,6 +217,7 @@ def four_bar(*lengths):
     return ks.four_bar(crank, coupler, rocker, rocker_pivot=(frame, 0.0), coupler=BODY, rocker=ROD)
 
 
+@pytest.mark.slow
 @every("loads", [(), ks.Gravity()])
 @every(
     ("mechanism", "angle", "digits"),
@@ -437,6 +438,7 @@ def rows(item, number):
     return map_numbers(item, lambda value: float(np.broadcast_to(value, (400, 1))[number, 0]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["slider", "four-bar"])
 def test_the_plausibility_test_misses_no_large_loss(kind):
     draw = Draw(23, 400)

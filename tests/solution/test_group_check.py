@@ -50,6 +50,7 @@ PLACES = {
 }
 
 
+@pytest.mark.slow
 @every("shape", [(), (1,), (1, 1)])
 @every("name", PLACES)
 def test_refilled_array_changes_nothing_made(name, shape):
@@ -182,6 +183,7 @@ def mine(change=None):
     return Mine(0.4, 0.3, (0.35, 0.1), coupler=ROD, rocker=ROD, change=change)
 
 
+@pytest.mark.slow
 @every("change", WRONG)
 def test_check_says_what_is_wrong_with_a_group(change):
     report, (what, _) = ks.check(mine(change)), WRONG[change]

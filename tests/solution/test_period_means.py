@@ -41,6 +41,7 @@ PRESS_WORK = 100.0 * 0.3 + 900.0 * 0.3 - 400.0 * RAMP
 TWO_TURNS = ks.Table([0.0, TURN, 1.5 * TURN], [-5.0, -5.0, -25.0], over="angle", period=2 * TURN)
 
 
+@pytest.mark.slow
 @every(
     "scene, work",
     [
@@ -119,6 +120,7 @@ def test_running_has_the_means_of_its_drive():
     assert s.mean_power == pytest.approx(s.losses.drive, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_comparison_has_mean_torque_and_power_of_machines_that_take_work():
     found = ks.compare(*(braked(-4.0, speed).solve(9) for speed in (5.0, 10.0)))
     row = found.frame().loc["mean drive power"]

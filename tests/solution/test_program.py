@@ -41,12 +41,14 @@ def test_derivatives_are_in_single_precision_too():
             assert np.max(np.abs(slope - wanted)) <= 1e-5 * np.max(np.abs(wanted)), path
 
 
+@pytest.mark.slow
 def test_double_bounds_equal_the_solutions():
     solution = SAW.solve(ANGLES)
     for name, bound in made(engine="numpy").error_bound(ANGLES).items():
         assert np.array_equal(bound, solution.error_bound(name))
 
 
+@pytest.mark.slow
 def test_tight_bounds_equal_the_solutions():
     solution, values = SAW.solve(ANGLES), {"slider.mass": 600.0}
     for name, bound in made(engine="numpy").error_bound(ANGLES, values, tight=True).items():

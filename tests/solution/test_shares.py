@@ -49,11 +49,13 @@ def test_sources_add_up_on_random_chains(seed):
     assert misfit(scene.solve(angles)) < 10.0 * ROUNDING
 
 
+@pytest.mark.slow
 @every("kind", ["roller", "flat", "swinging"])
 def test_sources_add_up_on_followers(kind):
     assert misfit(followers.scene(followers.KINDS[kind]()).solve(ANGLES)) < ROUNDING
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_inertia_and_weight_of_springs_are_their_own():
     loads = ks.Spring(5e5, 2.0, mass=100.0), ks.Spring(1e5, 2.1, mass=50.0), ks.GasSpring(0.01, 0.01, 2e6, at=2.0)
@@ -89,6 +91,7 @@ PRINTED = {
 """Of the cosine variant of the saw: peak, share and peak alone by source, and the peak of slider or spring alone."""
 
 
+@pytest.mark.slow
 @every("quantity", PRINTED)
 def test_coupler_makes_the_peaks_of_the_balanced_saw(quantity):
     total, sources, alone = PRINTED[quantity]
@@ -166,6 +169,7 @@ def test_with_friction_rows_are_effects_of_leaving_out():
         assert sampled > 0.99 * found[source].peak
 
 
+@pytest.mark.slow
 def test_a_load_given_twice_is_left_out_once():
     spring = ks.Spring(5e5, 2.0)
     s = saw(spring, spring, friction=RUBBING)
@@ -174,6 +178,7 @@ def test_a_load_given_twice_is_left_out_once():
         assert machines_without(s)[source].at(s.crank_angle).reaction("O") == pytest.approx(without, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_leaving_out_inertia_keeps_weight():
     s = saw(friction=RUBBING)
     heavy = ks.Force(600 * 9.81, at=("slider", 0.0, 0.0), direction=-np.pi / 2)

@@ -46,6 +46,7 @@ def made(build, *given, **changes):
 CIRCLE = ks.cams.Circle(0.2, (-0.05, 0.0))
 
 
+@pytest.mark.slow
 @every(
     ("found", "words"),
     [

@@ -26,6 +26,7 @@ def test_the_series_has_the_first_harmonics(order):
     assert np.max(np.abs(series.slider_acceleration - expected)) < 1e-12 * np.max(np.abs(expected))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MECHANISMS)
 def test_the_series_error_falls_with_the_order(few_models, name):
     full = solved(MECHANISMS[name])

@@ -80,6 +80,7 @@ def test_when_all_designs_fail_all_say_why():
     assert found.iloc[:, 2:4].isna().all(axis=None)
 
 
+@pytest.mark.slow
 def test_the_hundredth_design_impossible_among_many():
     designs = ks.designs.random({"coupler_length": "1.8..2.2 m", "slider.mass": "500..700 kg"}, 5000)
     designs.loc[::100, "slider.mass [kg]"] = -1.0
@@ -131,6 +132,7 @@ def of_nothing(count=40):
     return pd.DataFrame({name: rng.uniform(*ends, count) for name, ends in ranges.items()})
 
 
+@pytest.mark.slow
 @every("reduction", ["range", "mean", "rms", "swing", "harmonic_2", "largest_at"])
 def test_no_design_fails_by_rounding_of_what_is_zero(reduction):
     designs = of_nothing()
@@ -268,6 +270,7 @@ def test_fine_smooth_rows_are_swept_as_one(monkeypatch, around, angles):
         assert others == pytest.approx(spikes.means(scene, name), rel=2e-5)
 
 
+@pytest.mark.slow
 def test_unresolved_rows_are_taken_one_by_one():
     designs = pd.DataFrame({"slider.mass": [2.021, 1.396], "guide_offset": [-0.003, -0.001]})
     designs = designs.assign(crank_length=[0.043, 0.038], crank_speed=[38.019, 38.316])

@@ -37,6 +37,7 @@ def test_a_folder_that_is_no_path_is_refused(folder):
         sweep(factories.pump, DESIGNS, OUTPUTS, folder=folder)
 
 
+@pytest.mark.slow
 def test_a_folder_holds_a_dataset_that_pandas_reads(tmp_path, expected):
     folder = tmp_path / "new" / "sweep"
     assert_equal(sweep(factories.pump, DESIGNS, OUTPUTS, chunk=7, folder=folder), expected)
@@ -48,6 +49,7 @@ def test_a_folder_holds_a_dataset_that_pandas_reads(tmp_path, expected):
     assert_equal(pd.read_parquet(tmp_path / "named"), found)
 
 
+@pytest.mark.slow
 def test_rows_may_share_a_name(tmp_path, expected):
     twice = DESIGNS.set_index(pd.Index([0] * 41))
     found = sweep(factories.pump, twice, OUTPUTS, chunk=7)
@@ -55,6 +57,7 @@ def test_rows_may_share_a_name(tmp_path, expected):
     assert_equal(sweep(factories.pump, twice, OUTPUTS, chunk=7, folder=tmp_path), found)
 
 
+@pytest.mark.slow
 def test_finished_folder_is_read_again(tmp_path):
     calls: list[int] = []
     first = sweep(counted(calls), DESIGNS, OUTPUTS, chunk=7, folder=tmp_path)
@@ -100,6 +103,7 @@ def test_a_killed_process_leaves_a_folder_that_goes_on(tmp_path, expected):
     assert_equal(sweep(function, DESIGNS, OUTPUTS, chunk=7, folder=folder), expected)
 
 
+@pytest.mark.slow
 def test_stopped_worker_sweep_goes_on(tmp_path, expected, monkeypatch):
     """By an error while results come in."""
     put = dataset.Dataset.keep
@@ -159,6 +163,7 @@ def test_a_case_that_was_loaded_is_swept_as_it_was(tmp_path):
     assert not sweep(changed, designs, OUTPUTS).equals(before)
 
 
+@pytest.mark.slow
 def test_files_that_a_case_names_are_part_of_it(tmp_path):
     designs, options = pd.DataFrame({"crank_speed": [30.0, 33.0]}), {"angles": 12, "folder": tmp_path / "sweep"}
     cam = {"kind": "sampled", "table": "cam.csv"}

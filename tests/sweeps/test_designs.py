@@ -142,6 +142,7 @@ def known(case, variant):
     return ks.load_case(case).variant(variant).units
 
 
+@pytest.mark.slow
 def test_paths_are_the_variants_numbers_with_units():
     paths = known("sawframe_2r63", "cam-circle")
     wanted = {"spring.stiffness": "N/m", "cam.centre.x": "m", "coupler.centre": "m", "gravity.direction": "rad"}

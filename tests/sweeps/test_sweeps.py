@@ -107,6 +107,7 @@ def test_counterweights_follow_each_design():
 # Engines
 
 
+@pytest.mark.slow
 def test_engines_and_threads_give_the_same_table(interpreted, monkeypatch):
     options: dict = {"outputs": [*OUTPUTS, "ratio range balancing_torque"], "variant": "cam-circle", "angles": 12}
     expected = sweep(SAW, rising(30), engine="numpy", **options)
@@ -139,6 +140,7 @@ def test_memory_is_that_of_a_chunk(monkeypatch):
     assert peak(12_000) - peak(3000) < 9000 * 100
 
 
+@pytest.mark.slow
 def test_bar_counts_designs_on_disk(tmp_path, monkeypatch):
     shown = io.StringIO()
     monkeypatch.setattr(sys, "stderr", shown)
@@ -311,6 +313,7 @@ def test_uncompilable_sweeps_use_numpy(interpreted, monkeypatch):
     assert sweep(made, designs, ["rms O"])[FAILED].tolist() == ["", ""]
 
 
+@pytest.mark.slow
 @every("angles", [12, 13, 36, 48, 100])
 def test_few_angles_are_raised_to_enough(angles):
     outputs, designs = ["largest balancing_torque", "mean_absolute A"], pd.DataFrame({"crank_speed": [2.0, 2.5]})

@@ -189,6 +189,7 @@ def test_peak_at_an_undeclared_jump_is_found(rise):
     assert table.iloc[0, 1] == pytest.approx(ks.extremes(scene.solve(12), "balancing_torque").range[1], rel=1e-7)
 
 
+@pytest.mark.slow
 def test_spreads_and_data_sets_of_new_groups_and_loads(tmp_path):
     spreads = {"point_spring.stiffness": "normal 300 N/m +- 3 N/m", "lever_pivot.y": "-0.201..-0.199 m"}
     found = ks.tolerances(shaper(), "rms O2", spreads, count=16, progress=False, angles=24)

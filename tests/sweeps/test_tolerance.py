@@ -63,6 +63,7 @@ def test_sobol_indices_are_variance_shares():
     assert found.table[COLUMN].var() == pytest.approx(variances.sum(), rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_numbers():
     first, again, other = (tolerances(ram, OUTPUT, SPREADS, count=16, seed=seed) for seed in (3, 3, 4))
     pd.testing.assert_frame_equal(first.table, again.table, check_exact=True)
@@ -71,6 +72,7 @@ def test_the_same_seed_gives_the_same_numbers():
     assert not first.sensitivity.equals(other.sensitivity)
 
 
+@pytest.mark.slow
 def test_a_study_goes_on_from_its_folder(tmp_path, monkeypatch):
     """Made of several sweeps, each in a folder of its own."""
     expected = tolerances(ram, OUTPUT, SPREADS, count=16)
@@ -144,6 +146,7 @@ def with_spreads(folder, **spreads):
     return case.path
 
 
+@pytest.mark.slow
 def test_case_spreads_are_the_variants(tmp_path):
     spreads = {"slider.mass": "triangular 588..600..612 kg", "cam.radius": "normal 300 mm +- 0.2 mm"}
     case = ks.load_case(with_spreads(tmp_path, **spreads))
@@ -175,6 +178,7 @@ def test_wrong_spreads_are_reported_with_the_file(tmp_path):
     assert len(caught.value.problems) == 4
 
 
+@pytest.mark.slow
 def test_shipped_tolerances_are_of_the_circular_cam():
     case = ks.load_case("sawframe_2r63")
     found = tolerances(case, "ratio mean_absolute balancing_torque", count=2)

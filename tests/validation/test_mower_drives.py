@@ -11,6 +11,7 @@ from support.every import every
 case = ks.load_case("mower_drives")
 
 
+@pytest.mark.slow
 @every("variant", case.variants)
 def test_drives_of_the_knife_do_its_work_over_its_stroke(variant):
     s = case.solve(variant, angles=7200)

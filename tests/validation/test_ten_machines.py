@@ -159,6 +159,7 @@ def close(found, expected, tolerance=1e-9):
 # Machines
 
 
+@pytest.mark.slow
 def test_engine_with_a_diagram_from_top_dead_centre_by_virtual_work():
     s, (degrees, bar) = names("engine")["s"], np.loadtxt("diagram.csv", delimiter=",", skiprows=1).T
     crank = on_crank(0.045)

@@ -57,6 +57,7 @@ def test_shipped_variants_are_the_lying_ones_stood_upright(name):
     assert SAW.reference_of(f"upright-{name}") == "upright-plain"
 
 
+@pytest.mark.slow
 @every(
     ("name", "direction", "gain", "extrema", "reaction"),
     [
@@ -124,6 +125,7 @@ def test_shipped_upright_optimum_at_other_speed(speed, gain, reaction):
     assert round(found.peak_reactions("O")[1] / 1e3, 2) == reaction
 
 
+@pytest.mark.slow
 def test_crank_out_of_balance_adds_its_centrifugal_force():
     """100 kg at 0.15 m: 16.8 kN that turn with the crank, beside its weight; the torque of the weight is new."""
     heavy = OPTIMAL.varied({"crank.mass": 100.0, "crank.centre.along": 0.15})
@@ -137,6 +139,7 @@ def test_crank_out_of_balance_adds_its_centrifugal_force():
     assert round(compared(heavy).mean_torque_ratio) == 249
 
 
+@pytest.mark.slow
 @every(("speed", "gain", "reaction"), [(1.0, 411.4, 0.75), (0.99, 48.4, 2.53), (1.01, 51.6, 2.68)])
 def test_cam_found_for_the_lying_saw_at_other_speed(speed, gain, reaction):
     case = shipped("sawframe_2r63_optimal")

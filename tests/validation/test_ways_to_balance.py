@@ -53,6 +53,7 @@ def test_found_ways(name):
     assert frame == pytest.approx(FOUND[name][1], rel=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_longer_springs_at_the_pin():
     scene = CASE.variants["pin-springs"].scene

@@ -169,6 +169,7 @@ def words(ax):
     return [text.get_text() for text in ax.texts if not text.get_text().startswith("beyond")]
 
 
+@pytest.mark.slow
 @every("quantity", ["balancing_torque", "O", "slider_velocity"])
 def test_gaps_are_shaded_from_value_to_value_and_named(quantity):
     figure, ax = plt.subplots()
@@ -181,11 +182,13 @@ def test_gaps_are_shaded_from_value_to_value_and_named(quantity):
     plt.close(figure)
 
 
+@pytest.mark.slow
 def test_gap_of_some_is_named_as_theirs(axes):
     ks.plots.torque({"long": solved(LONG), "short": solved(SHORT), "slow": solved(SHORT, 3.0)}, ax=axes)
     assert words(axes) == ["short, slow: cannot be assembled"] * 2
 
 
+@pytest.mark.slow
 def test_what_jams_is_not_said_to_be_open(axes):
     friction = {"guide": ks.GuideFriction(0.9), "B": ks.PinFriction(0.9, 0.02)}
     solution = solved(ks.crank_slider(0.3, 0.42, slider=ks.Link(60.0)), friction=friction)
@@ -202,6 +205,7 @@ def test_without_gaps_nothing_is_shaded(axes):
     assert axes.get_ylim()[1] >= solution.balancing_torque.max()
 
 
+@pytest.mark.slow
 @every("samples", [180, 1440])
 def test_limits_ignore_values_near_gaps(samples):
     solution = ks.Scene(SHORT, 7.0).solve(samples, on_gap="nan")
@@ -216,6 +220,7 @@ def test_limits_ignore_values_near_gaps(samples):
     plt.close(figure)
 
 
+@pytest.mark.slow
 def test_hodograph_beside_a_gap_is_readable(axes):
     four_bar = ks.four_bar(0.3, 0.4, 0.3, rocker_pivot=(0.51, 0.0), rocker=ks.Link(3, 0.1, 0.05))
     solution = solved(four_bar, loads=ks.Gravity())
@@ -229,6 +234,7 @@ def test_hodograph_beside_a_gap_is_readable(axes):
     assert {"0°", "30°", "300°", "330°"} <= {text.get_text() for text in axes.texts}
 
 
+@pytest.mark.slow
 def test_hodograph_ends_in_arrows_or_crosses(axes):
     pump = ks.crank_slider(0.3, 0.6, slider=ks.Link(600.0))
     loads, friction = [ks.Gravity(), ks.ProcessForce(500.0)], {"guide": ks.GuideFriction(1.9)}

@@ -165,6 +165,7 @@ def test_curves_of_cams_lie_around_the_crank():
     plt.close(ax.figure)
 
 
+@pytest.mark.slow
 def test_an_input_is_never_overwritten(case, found, tmp_path):
     (tmp_path / "file").write_text("old")
     with pytest.raises(ks.ParameterError, match="figures"):

@@ -182,6 +182,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("shape", "variants"), [(shape, 1 + place) for place, shape in enumerate(SHAPES)])
 def test_overview_has_its_panels_at_any_size(shape, variants):
     solution = ks.Scene(SHAPES[shape], 10.0, loads=ks.Gravity()).solve(24)

@@ -169,6 +169,7 @@ def test_spring_from_far_away_leaves_the_machine_large(axes):
     assert 0.0 < (end - start)[0] < 0.5
 
 
+@pytest.mark.slow
 def test_working_curve_is_drawn_on_each_side_that_is_pressed(axes):
     cam, roller = ks.cams.CosineLaw(0.3, 2.0), ks.Roller(0.05, 0.04, 210e9, 0.3)
     saw = ks.cam_crank_slider(cam, cam.coupler_length, slider=ks.Link(600.0), roller=roller)
@@ -238,6 +239,7 @@ def test_the_roller_of_a_cam_is_drawn_about_its_centre(axes):
     assert distances[0] > 0
 
 
+@pytest.mark.slow
 def test_pivots_stand_within_the_axes(axes):
     drawn(ks.four_bar(0.1, 0.4, 0.3, rocker_pivot=(0.35, -0.2), **BARS), axes)
     axes.figure.canvas.draw()
@@ -331,6 +333,7 @@ def boxes(ax, texts):
     return [text.get_window_extent() for text in texts]
 
 
+@pytest.mark.slow
 def test_labels_of_one_point_do_not_overlap(axes):
     found = boxes(axes, [label(axes, f"label {place}", (0.5, 0.5)) for place in range(4)])
     assert not any(one.overlaps(other) for place, one in enumerate(found) for other in found[:place])
@@ -381,6 +384,7 @@ def line(ax, label):
     return np.array(found.get_data())
 
 
+@pytest.mark.slow
 def test_cam_of_a_flat_face_is_drawn_with_faces_that_touch_it():
     law = ks.laws.cosine(0.004, 0.03)
     ax = ks.plots.cam_profile(ks.FlatFollower(law, ks.Guide.at(np.pi / 2)).disk, angles=(0, 90))
@@ -416,6 +420,7 @@ def test_curvature_and_pressure_angle_show_limits():
     assert ax.get_ylabel() == "pressure angle [deg]"
 
 
+@pytest.mark.slow
 def test_contact_pressure_shows_limit_and_side():
     saw = ks.cam_crank_slider(LAW, LAW.coupler_length, slider=ks.Link(600.0))
     solution = ks.solve(saw, DEGREES, crank_speed=25.0, loads=ks.Spring.balancing(600.0, 33.5, 2.0))

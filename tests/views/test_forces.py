@@ -29,6 +29,7 @@ def arrows(ax):
     return np.array([np.hypot(*(tip - shaft[0])) for shaft, tip in zip(shafts, tips, strict=False)])
 
 
+@pytest.mark.slow
 @every("solution, link", [(S, "crank"), (S, "coupler"), (S, "slider"), (CAM, "block"), (RUBBING, "slider")])
 def test_arrows_are_to_one_scale(solution, link):
     actions = free_body(solution.at(np.radians([50.0])).dynamics, link)

@@ -15,6 +15,7 @@ def saw():
     return {name: case.solve(name, 180) for name in ("plain", "cam-cosine")}
 
 
+@pytest.mark.slow
 def test_stack_reaches_the_whole_loss(saw, axes):
     solution = saw["plain"]
     assert ks.plots.lost_power(solution, ax=axes) is axes

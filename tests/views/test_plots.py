@@ -142,6 +142,7 @@ def test_ticks_of_a_drawing_are_in_the_unit_of_its_axes(axes):
         assert axes.get_xlabel() == label
 
 
+@pytest.mark.slow
 def test_the_axis_of_crank_angles_counts_radians_if_asked_to(axes):
     ks.plots.torque(solved(), ax=axes, units={"angle": "rad"})
     axes.figure.canvas.draw()

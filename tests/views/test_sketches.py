@@ -74,6 +74,7 @@ def test_every_length_of_every_kind_of_machine_stands_once_on_its_sketch(kind):
     check(random_machine(kind, loads=()))
 
 
+@pytest.mark.slow
 def test_a_sketch_shows_all_lengths_and_masses_of_an_offset_crank_slider():
     check(PUMP)
 

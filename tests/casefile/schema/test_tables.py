@@ -94,6 +94,7 @@ def test_loads_of_a_kind_are_numbered_in_order(tmp_path):
 # Variants by their mechanism
 
 
+@pytest.mark.slow
 def test_every_key_of_a_variant_reaches_the_mechanism(tmp_path):
     text = """
 title = "all keys"

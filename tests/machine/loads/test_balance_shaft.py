@@ -234,6 +234,7 @@ def test_derivatives_equal_differences():
             assert np.max(np.abs(exact[name][path] - slope)) < 1e-7 * max(1.0, np.max(np.abs(above[name])))
 
 
+@pytest.mark.slow
 def test_sweeps_and_steady_running():
     scene = pump(SHAFT, acceleration=0.0)
     designs = ks.designs.grid({"balance_shaft.unbalance": "0..0.06 kg m:3", "balance_shaft.phase": "0..40 deg:2"})
@@ -319,6 +320,7 @@ def test_ratios_by_numpy(value):
     assert ks.BalanceShaft(0.1, value).ratio == float(value)
 
 
+@pytest.mark.slow
 def test_pulled_by_nothing_it_does_nothing():
     one, two = (pump(*shafts).solve(5) for shafts in ((), (ks.BalanceShaft(0.0, 3),)))
     assert np.array_equal(one.balancing_torque, two.balancing_torque)

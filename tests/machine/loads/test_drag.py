@@ -88,6 +88,7 @@ def test_extremes_take_both_limits_where_the_rocker_turns_back():
     assert found.value.min() <= beside.min() + 1e-6
 
 
+@pytest.mark.slow
 def test_program_derivative_and_sweep():
     program = ks.compile(scene(), "balancing_torque", engine="numpy")
     values, slopes = program(TURN), program.derivatives(TURN, "torque.value")
@@ -103,6 +104,7 @@ def test_program_derivative_and_sweep():
     assert mean[1] == pytest.approx(0.4 * scene().solve(7).losses.drive / 10.0, rel=1e-10)
 
 
+@pytest.mark.slow
 def test_mirrored_machine_gives_mirrored_forces():
     found = mirror.solved(scene(ks.Gravity(), drag(), drag(4.0, on="coupler", against="crank")))
     assert max(found.values()) < 1e-12

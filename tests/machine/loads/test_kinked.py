@@ -218,6 +218,7 @@ def test_four_stroke_gas_force_acts_every_other_turn(tmp_path, engine):
     np.testing.assert_allclose(with_gas.balancing_torque, without.balancing_torque - expected, rtol=0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_table_changed_after_loading_changes_nothing(tmp_path):
     """Neither solutions nor sweeps, in this process or in others."""
     angle, designs = np.radians(np.arange(0, 360, 10)), pd.DataFrame({"slider.mass": [0.4, 0.6]})

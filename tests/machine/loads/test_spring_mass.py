@@ -51,6 +51,7 @@ def case():
     return ks.load_case("sawframe_2r63")
 
 
+@pytest.mark.slow
 @every(
     "mass, ratio, cam, frame, feet",
     [
@@ -70,6 +71,7 @@ def test_springs_of_the_saw_with_mass(case, mass, ratio, cam, frame, feet):
     assert found == pytest.approx([cam, frame, feet], abs=0.06)
 
 
+@pytest.mark.slow
 def test_heavy_springs_load_the_frame_more_than_the_plain_saw(case):
     plain = ks.extremes(case.solve("plain"), "shaking_force").largest
     assert plain == pytest.approx(286.8e3, abs=60.0)
@@ -198,6 +200,7 @@ def assert_engine_knows_the_mass(engine):
     assert far(batch[:, 0], pump(more=[ks.Gravity()]).shaking_force) < 1e-13
 
 
+@pytest.mark.slow
 def test_derivatives_and_bounds_know_the_mass():
     assert_engine_knows_the_mass("numpy")
 
@@ -208,6 +211,7 @@ def test_the_compiled_engine_knows_the_mass():
     assert_engine_knows_the_mass("compiled")
 
 
+@pytest.mark.slow
 def test_its_steps_are_explained():
     machine = ks.crank_slider(0.05, 0.2, slider=ks.Link(1.0))
     s = ks.solve(machine, 0.7, crank_speed=9.0, loads=[ks.Gravity(), ks.Spring(1e3, 0.2, mass=0.3)])

@@ -84,6 +84,7 @@ def test_a_narrow_smooth_bump_is_split():
     assert np.abs(found - 0.2).max() < 0.015
 
 
+@pytest.mark.slow
 @every("seed", range(4))
 def test_between_bends_a_table_is_polynomial(seed):
     rng = np.random.default_rng(seed)

@@ -210,6 +210,7 @@ def test_beyond_a_table_over_travel_jax_gives_nan(double):
         torque(DIAGRAM, MANY, 0.24)
 
 
+@pytest.mark.slow
 def test_traced_rows_are_refused_with_a_remedy(double):
     def of_values(values):
         return torque(ks.Table(X, values, over="travel"), MANY).sum()

@@ -64,6 +64,7 @@ def test_power_is_the_mean_force_times_stroke_times_strokes_a_second(frame, spee
     assert s.losses.drive == pytest.approx(WORK * abs(speed) / (2 * np.pi), rel=2e-14)
 
 
+@pytest.mark.slow
 @every("frame", ("centric", "offset", "behind", "cam"))
 @every("speed", (33.5, -33.5))
 @every("cuts", ("toward crank", "away"))
@@ -75,6 +76,7 @@ def test_force_acts_against_the_motion_on_the_cutting_stroke_alone(frame, speed,
     np.testing.assert_allclose(s.loads[1].push(s), expected, rtol=1e-12)
 
 
+@pytest.mark.slow
 @every("speed", (33.5, -33.5))
 def test_without_thrust_it_is_a_process_force_over_travel(speed):
     s = scene(speed=speed).solve(TURN)
@@ -123,6 +125,7 @@ def equilibrium(item, speed, offset, angle, load):
     return np.linalg.solve(rows, right)
 
 
+@pytest.mark.slow
 @every("speed", (33.5, -33.5))
 @every("cuts", ("toward crank", "away"))
 @every("angle", (0.0, 0.5))
@@ -186,6 +189,7 @@ def test_extremes_know_the_jumps_at_the_dead_centres(name):
     assert high >= values.max()
 
 
+@pytest.mark.slow
 @every("q", ("balancing_torque", "guide_moment"))
 @every("path", ("crank_length", "coupler_length", "guide_offset", "sawing.kerf", "sawing.resistance", "sawing.thrust"))
 def test_derivatives_include_that_of_the_stroke(q, path):
@@ -287,6 +291,7 @@ def test_knife_cuts_where_the_edges_of_section_and_finger_meet():
         assert 0.2 < meets.mean() < 0.4
 
 
+@pytest.mark.slow
 @every("speed", (60.0, -60.0))
 @every("radius", (0.038, 0.0762))
 @every("offset", (0.0, -0.02))
@@ -434,6 +439,7 @@ def test_a_machine_that_does_not_close_all_round_has_no_stroke_and_no_force(item
     np.testing.assert_allclose(item.push(s)[1], item.push(alone), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_no_stroke_no_force():
     short = ks.crank_slider(0.3, 0.25, **LINKS)
     with pytest.raises(ks.AssemblyError):

@@ -22,6 +22,7 @@ def curve(table, method, first, last):
     return rows["value"].to_numpy(), rows["error"].to_numpy()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "order", "coarsest", "finest"),
     [("differences, 2nd order", 2, 1e-1, 1e-3), ("differences, 4th order", 4, 3e-1, 3e-2)],

@@ -71,6 +71,7 @@ def test_global_system_equals_closed_forms(name):
     assert {wanted: value for wanted, value in errors.items() if not value < CLOSE} == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cosine law", *CHAINS])
 def test_each_newton_iteration_squares_the_error(name):
     s = solved(name)
@@ -80,6 +81,7 @@ def test_each_newton_iteration_squares_the_error(name):
     assert all(after < 3 * before**2 + CLOSE for before, after in pairwise(errors)), errors
 
 
+@pytest.mark.slow
 def test_speed_and_angles_may_vary_freely():
     angle = np.random.default_rng(1).uniform(-8.0, 8.0, 40)
     s = solved("circle", angle, speed=10.0 + np.sin(angle), acceleration=5.0 * np.cos(angle))

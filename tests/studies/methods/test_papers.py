@@ -80,6 +80,7 @@ def test_sign_changes_slot_force_and_its_effects():
     assert np.max(np.abs(printed.slot_force - CANCELLED.slot_force)) > 3e3
 
 
+@pytest.mark.slow
 def test_case_file_has_the_published_coefficients():
     table = CASE.comparison_table("cam-circle")
     rows = [f"torque extremum {number}" for number in range(1, 5)]

@@ -31,6 +31,7 @@ def test_extremes_are_those_of_the_library(name):
     assert row.ratio == pytest.approx(abs(other.largest / found.largest), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_figures_are_those_of_compare_and_means():
     solution, reference = RUBBED.solve(360), HEAVIER.solve(360)
     rows = {row.label: row for row in answers.figure_rows(solution, answers.Reference(reference))}
@@ -50,6 +51,7 @@ def test_what_jams_has_no_mean_and_says_why():
     assert all("jams" in row.problem and np.isnan(row.value) for row in rows)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "text"),
     [
@@ -79,6 +81,7 @@ def test_sensitivities_agree_with_differences(scene, text):
             assert np.isnan(row.share)
 
 
+@pytest.mark.slow
 def test_sensitivities_are_sorted_with_zeros_apart():
     shares = [row.share for row in answers.sensitivities(SAW, "largest O").rows]
     known = [abs(share) for share in shares if not np.isnan(share)]
@@ -87,6 +90,7 @@ def test_sensitivities_are_sorted_with_zeros_apart():
     assert np.isnan(shares[len(known) :]).all()
 
 
+@pytest.mark.slow
 def test_an_output_that_is_zero_has_slopes_but_no_shares():
     found = answers.sensitivities(STILL, "largest O")
     assert found.value == 0.0

@@ -28,6 +28,7 @@ def parts(session, **request):
     return found, last
 
 
+@pytest.mark.slow
 def test_the_table_has_numbers_of_the_state_that_it_carries(saw):
     state = CIRCLE | {"values": {"slider.mass": 620.0}}
     found, _ = parts(saw, kind="ask", state=state, reference=PLAIN, show=["O", "cam_force", "unknown"])
@@ -73,6 +74,7 @@ def test_sensitivities_have_shares_and_slopes_in_shown_units(saw):
     assert np.isnan(rows["guide_offset"]["share"])
 
 
+@pytest.mark.slow
 def test_tolerances_of_the_case_are_the_default(saw):
     (first, *others), _ = parts(saw, kind="tolerances", state=CIRCLE, show=["O", "balancing_torque"])
     assert first["spreads"]["spring.stiffness"] == 7000.0
@@ -97,6 +99,7 @@ def speeds(session, **states):
     return list(session.answer({"id": 1, "kind": "running"} | states))
 
 
+@pytest.mark.slow
 def test_speed_is_that_of_steady_running_of_state_and_reference():
     session = Session(SAW)
     states = {"state": {"variant": "cam-cosine", "values": {"slider.mass": 620.0}}, "reference": {"variant": "plain"}}

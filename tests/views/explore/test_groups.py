@@ -71,12 +71,14 @@ BUILT = {
 }
 
 
+@pytest.mark.slow
 @every("kind", BUILT)
 def test_a_template_is_the_built_mechanism_as_a_chain(kind):
     scene = groups.scene_of(groups.template(kind))
     assert_same(scene, ks.Scene(BUILT[kind](), scene.crank_speed, loads=scene.loads))
 
 
+@pytest.mark.slow
 @every("kind", STARTERS)
 def test_a_template_equals_its_starter_case(kind, tmp_path):
     from kinetostatics.casefile.starters import starter
@@ -176,6 +178,7 @@ def test_another_kind_of_cam_gets_its_own_keys():
     assert list(raw["groups"][0]["cam"]) == ["kind", "cosine"]
 
 
+@pytest.mark.slow
 @every("kind", ["roller follower", "flat follower", "swinging follower"])
 def test_a_law_of_segments_rises_dwells_and_returns(kind):
     raw = added(groups.template("crank-slider"), kind)
@@ -302,6 +305,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.slow
 @every("name", HOSTILE)
 def test_a_hostile_table_ends_in_one_message(name):
     raw, words = HOSTILE[name]
@@ -408,6 +412,7 @@ def test_changed_numbers_stay_when_a_group_is_added():
     assert state == state_of("four-bar", **values)
 
 
+@pytest.mark.slow
 def test_numbers_written_into_the_table_give_the_same_scene_bit_for_bit():
     values = {
         path: 1.01 * value + 1e-3 / 3 for path, value in groups.scene_of(groups.template("chain")).parameters.items()
@@ -526,6 +531,7 @@ def test_the_command_needs_a_case_or_a_mechanism_to_begin_with(options, capsys):
 # A chain of many actions is the same from a file
 
 
+@pytest.mark.slow
 def test_an_edited_chain_is_equal_when_read_from_a_file(tmp_path):
     state = state_of("four-bar", crank_length=0.11, **{"coupler.mass": 4.4})
     for action in (

@@ -77,6 +77,7 @@ def follow(scene, mistakes, title):
                         mistakes.append((title, handle.label, "leaves the pointer beside the guide"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", quick(sorted(shipped_cases(), key=QUICK_CASES.__contains__, reverse=True), 3))
 @pytest.mark.filterwarnings("ignore::kinetostatics.HintWarning")
 def test_points_of_the_shipped_cases_follow_the_pointer(case):
@@ -90,6 +91,7 @@ def test_points_of_the_shipped_cases_follow_the_pointer(case):
     assert mistakes == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", quick(sorted(KINDS, key=lambda kind: "cam" in kind), 3))
 def test_points_of_every_kind_of_machine_and_of_its_mirror_image_follow_the_pointer(kind):
     scene, mistakes = random_machine(kind), []
@@ -98,6 +100,7 @@ def test_points_of_every_kind_of_machine_and_of_its_mirror_image_follow_the_poin
     assert mistakes == []
 
 
+@pytest.mark.slow
 @every("scene", [HANGING, GASSY])
 def test_places_of_loads_follow_the_pointer(scene):
     mistakes = []

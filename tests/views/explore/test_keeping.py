@@ -38,6 +38,7 @@ def assert_same_bits(one, other):
         np.testing.assert_array_equal(first[name], second[name], name)
 
 
+@pytest.mark.slow
 def test_a_saved_case_has_the_same_numbers_and_its_reference(tmp_path):
     session = Session(CASE, folder=tmp_path)
     found = kept(session, tmp_path, name="heavier")
@@ -76,6 +77,7 @@ def test_a_saved_case_has_its_drives_and_their_files(tmp_path):
 FOLDERS = {"decomposed": "e\u0301 '\"", "DEL": "a\x7fb", "relative": "plain"}
 
 
+@pytest.mark.slow
 @every("name", FOLDERS)
 def test_a_motor_is_found_again_from_any_folder(tmp_path_factory, monkeypatch, name):
     top = tmp_path_factory.mktemp("top")
@@ -205,6 +207,7 @@ def run_text(text):
     return names["scene"]
 
 
+@pytest.mark.slow
 def test_python_text_builds_the_same_scene(tmp_path, capsys):
     session = Session(CASE, folder=tmp_path)
     text = kept(session, tmp_path, "python")["text"]

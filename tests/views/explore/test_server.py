@@ -210,6 +210,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.slow
 @every("name", HOSTILE)
 def test_a_malformed_message_closes_its_socket_alone(name, caplog, capfd):
     async def closed(client):
@@ -308,6 +309,7 @@ def test_a_closed_page_ends_its_numbers(monkeypatch):
     assert "drawing" in served(left)
 
 
+@pytest.mark.slow
 def test_a_page_that_does_not_read_is_not_answered_on(monkeypatch):
     """What it has not read stays few answers: its requests wait in its own socket."""
     looks = []

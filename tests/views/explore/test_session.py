@@ -105,6 +105,7 @@ def test_a_wrong_request_is_a_problem_in_words(session, name):
     assert message in found["problem"]
 
 
+@pytest.mark.slow
 @every("value", [0.0, 1e-300, 1e-9, 1e9, 1e150, 1e300, -1e300])
 def test_no_number_ends_in_more_than_words(session, value):
     with warnings.catch_warnings(), np.errstate(all="ignore"):

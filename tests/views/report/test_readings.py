@@ -69,6 +69,7 @@ def test_a_quantity_that_a_machine_lacks_stands_empty():
     assert values[1] is not None
 
 
+@pytest.mark.slow
 def test_units_are_the_same_for_all_machines():
     found = of("sawframe_2r63")["quantities"]
     assert (found["balancing_torque"]["unit"], found["O"]["unit"]) == ("kN·m", "kN")
@@ -78,6 +79,7 @@ def test_units_are_the_same_for_all_machines():
     assert found["O"]["text"] == "ground on crank"
 
 
+@pytest.mark.slow
 def test_forces_precede_motion():
     names = list(of("sawframe_2r63")["quantities"])
     assert names[0] == "balancing_torque"
@@ -93,6 +95,7 @@ def test_decimals_give_the_largest_value_six_digits(largest, count):
     assert decimals(largest) == count
 
 
+@pytest.mark.slow
 def test_reaction_near_change_point_sets_no_scale():
     with warnings.catch_warnings(action="ignore"):
         found = readings(subject_of({"a": near_change_points()}).machines)
@@ -140,6 +143,7 @@ def test_a_ratio_says_how_many_times():
 # What is reported
 
 
+@pytest.mark.slow
 def test_reference_machine_comes_first():
     found = subject("mower_drive")
     assert list(found.machines) == ["unbalanced", "full", "partial-1", "partial-2", "partial-3", "optimal"]
