@@ -119,7 +119,11 @@ class Circle(checks.Checked, Cam):
         return r, slope, lean * slope - along * (1.0 + lean * lean) * r / root
 
     def _polar_near_circle(self, along, across, ray):
-        """The same with O close to the circle, by the smallest radius and positive terms, without cancellation."""
+        """The same with O close to the circle, without differences of nearly equal lengths.
+
+        All follow from the smallest radius and positive terms; r (root - along) is the product of the smallest and
+        largest radius.
+        """
         (x, y), radius = self.centre, self.pitch_radius
         (away, rest), (direction, reach) = length_with_error(self.centre), direction_and_length((y, -x))
         least, share = compensated_sum(radius, -away, minus(None, rest)), 0.5 * away / (reach * reach)

@@ -138,7 +138,10 @@ class LawCam(Cam):
         return tuple((part - reach).reshape(shape) for part, reach in zip(along, found, strict=True))
 
     def _near_singular(self, turning, side, h, d, first, second):
-        """Reach w = -side h sqrt(q p), p = L + side d, and two derivatives; `side` is the sign of d there."""
+        """Reach w and two derivatives at distances h from a singular angle; `side` is the sign of d there.
+
+        w = -side h sqrt(q p), p = L + side d, with q, q' and h q'' from moments of d'' and d''' over the distance.
+        """
         edges, sums = self._moments[turning]
         ahead = np.minimum(np.searchsorted(edges, h, side="right"), edges.size) - 1
         start = np.where(h < 0.0, np.searchsorted(edges, h), ahead)

@@ -34,7 +34,11 @@ def half_width(force, width, modulus, radius):
 
 
 def relative_radius(bend, roller_radius, side):
-    """Relative radius Re = R (1 + side kappa R) of a roller on a disk (side -1) or a ring (+1), m."""
+    """Relative radius Re of a roller on its cam, m, from the curvature kappa of the pitch curve, 1/m.
+
+    The working curve is offset from the pitch curve by the radius R of the roller. So Re = R (1 - kappa R) on a disk,
+    side -1, and R (1 + kappa R) on a ring, side +1.
+    """
     return roller_radius * (1.0 + side * bend * roller_radius)
 
 

@@ -235,7 +235,10 @@ class Follower(checks.Checked, Group):
 
 
 def path_curvature(joint):
-    """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside."""
+    """Curvature of the path of a joint as seen from the crank, 1/m, positive where it is convex from outside.
+
+    In this view the joint moves around the cam clockwise.
+    """
     place, first, second = joint
     along = subtract_vectors(first, left(place))
     return -curvature(along, subtract_vectors(subtract_vectors(second, scale_vector(2.0, left(first))), place))

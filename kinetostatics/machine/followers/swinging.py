@@ -63,7 +63,10 @@ def _met(arm, roller, lever):
 
 
 def resolve(motion, arm_length, load):
-    """Forces of cam and ground and wrench of the crank for a `load` about the pivot (kernel)."""
+    """Force of the cam on the roller, of the ground on the arm, and wrench of the crank on the arm (kernel).
+
+    `load` is the wrench of all others about the pivot.
+    """
     couple = number_or_zero(load.moment)
     force = couple / (arm_length * motion.lever)
     pressed = scale_vector(force, motion.across)

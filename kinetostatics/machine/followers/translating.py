@@ -91,7 +91,10 @@ class GuidedFollower(Follower):
 
 
 def roller_forces(travel, guide, load, push):
-    """Forces of cam and ground, moment of the ground, wrench of the crank; `push`: force along the guide (kernel)."""
+    """Forces of cam and ground on the follower, moment of the ground, and wrench of the crank (kernel).
+
+    `push` is the applied force along the guide, `load` all else that acts on the follower, a wrench about P.
+    """
     along, aside = rotate_back(vector_or_zero(load.force), guide.direction)
     pushed = -plus(along, push)
     lean = plus(guide.offset, travel.first) / travel.position

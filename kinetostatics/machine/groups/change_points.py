@@ -163,7 +163,9 @@ def _start(pivot, ground, facing):
 def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
     """Direction, ratio and slope of coupler and rocker, then the last fields of `RockerMotion`, for a pin (kernel).
 
-    The pin is one of the crank, or of a rocker; `closure` leaves out the change points.
+    The pin is one of the crank, or of a rocker. The branch is open (+1) or crossed (-1). `closure` leaves out the
+    change points. The sine of the transmission angle is a factor times a distance, which vanishes only there;
+    `divisor` is the pair of both.
     """
     carrier = parse_carrier(passage)
     turning = _turning(placement, on, pivot, carrier)
@@ -203,7 +205,11 @@ def place(placement, on, coupler_length, rocker_length, pivot, passage, side):
 
 
 def slid(placement, on, coupler_length, guide, passage, side):
-    """Reach of a coupler along the guide, rate of the coupler and its slope, divisor, and closure (kernel)."""
+    """Reach of a coupler along the guide, rate of the coupler and its slope, divisor, and closure (kernel).
+
+    With psi from the right normal of the guide the coupler is perpendicular to it where cos(psi/2) ("far") or
+    sin(psi/2) ("near") vanishes. The divisor is a factor and the distance from the change points.
+    """
     kind, facing = parse_passage(passage)
     throw = placement.course(on).throw
     (a, direction), slack = throw.polar, throw.radius_and_rest[1]
@@ -223,7 +229,11 @@ def slid(placement, on, coupler_length, guide, passage, side):
 def slotted(placement, on, pivot, offset, passage, side):
     """Direction of a slotted lever, its ratio and the slope of that, reach, divisor, and closure (kernel).
 
-    The rates have another divisor, (a+d)/2 +- sqrt(a d) cos(psi/2), a sum of squares by a quarter of the angle.
+    The slot points to the block (+1) or away from it (-1) in the half turn behind O -> O2. The divisor is the reach, as
+    a factor and the distance from the change point.
+
+    With the pivot at the distance d the rates have another divisor, (a+d)/2 +- sqrt(a d) cos(psi/2). It is a sum of
+    squares by a quarter of the angle. It is small where A passes close by the pivot.
     """
     kind, facing = parse_passage(passage)
     a, ahead = placement.course(on).throw.polar
@@ -248,7 +258,10 @@ def slotted(placement, on, pivot, offset, passage, side):
 
 
 def divide(parts, divisor):
-    """Components of a force over a factor and the distance from a change point, where a part of 0 stays 0 (kernel)."""
+    """Components of a force over a factor and the distance from a change point, if there is one (kernel).
+
+    Each is divided by itself: at the change point one that vanishes stays 0, the others are infinite.
+    """
     factor, distance = divisor
     return tuple(part / factor if distance is None else part / factor / distance for part in parts)
 

@@ -69,7 +69,10 @@ class LeverMotion(NamedTuple):
 
 
 def place(joint, pivot, offset, assembly):
-    """Direction of the lever for a joint, its ratio and slope, then the last fields of `LeverMotion` (kernel)."""
+    """Direction of the lever for a given joint, its ratio and slope, then the last fields of `LeverMotion` (kernel).
+
+    An offset of None is zero.
+    """
     d = (offset_from_zero(joint.position[0] - pivot[0], abs(pivot[0]) + abs(pivot[1])), joint.position[1] - pivot[1])
     square = dot(d, d)
     distance = sqrt(square)
@@ -92,7 +95,11 @@ def place(joint, pivot, offset, assembly):
 
 
 def resolve(motion, lever_load, block_load):
-    """Forces on block and lever at joint and pivot, and of the slot, by moments about the pivot (kernel)."""
+    """Forces on the block at its joint and on the lever at its pivot, and of the slot on the block (kernel).
+
+    Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of both links
+    together about the pivot give the force across the slot.
+    """
     moment, across = number_or_zero(plus(lever_load.moment, block_load.moment)), left(motion.lever.direction)
     if motion.divisor[1] is None:
         (slot,) = divide((moment,), motion.divisor)

@@ -122,7 +122,10 @@ def direction_and_length(start):
 
 
 def squared_distances(ray, direction, reach):
-    """Cross product of a direction of length `reach` with a ray, squared distances of its tip from the ray's tips."""
+    """Cross product of a direction of length `reach` with a ray, and squared distances of its tip from the ray's tips.
+
+    The ray is as long as the direction, ahead and backward. A small distance has the error of the cross product alone.
+    """
     (x, y), (cosine, sine) = direction, ray
     along, across = plus(product(x, cosine), product(y, sine)), minus(product(x, sine), product(y, cosine))
     aside, less, more = across * across, along - reach, along + reach
@@ -232,7 +235,10 @@ def slotted(placement, on, pivot, offset, assembly):
 
 
 def has_small_clearance(throw, offset, size):
-    """Whether a length or pivot distance, +- an offset, is nearly the radius of a crank pin, in any design."""
+    """Whether a length or pivot distance, plus or minus an offset, is nearly the radius of a pin of the crank.
+
+    In any design of a batch.
+    """
     numbers = (*throw.at, offset, *(size if isinstance(size, tuple) else (size,)))
     plain = FLOATS.issuperset(map(type, numbers))  # most mechanisms: made in half the time
     if not plain and not all(map(checks.has_known_values, numbers)):
@@ -266,7 +272,11 @@ def across(swing, guide):
 
 
 def departure(placement, drawn_in, joint, direction, reach, short):
-    """Second derivative of that coordinate plus it; the reach loses `drawn_in`. None where both are large."""
+    """Second derivative of `elongation`'s coordinate plus the coordinate; None where both are large.
+
+    The share of the joint is 0 for a pin of the crank, and known for a roller on a cam; the reach loses `drawn_in` in
+    its second derivative.
+    """
     course = placement.course(joint)
     if course.throw is not None:
         return reach - short - drawn_in
@@ -277,7 +287,11 @@ def departure(placement, drawn_in, joint, direction, reach, short):
 
 
 def outward(placement, joint, direction, reach, short):
-    """That coordinate, or its opposite beyond O, as the mean radius of the orbit and a small rest, m; or None."""
+    """That coordinate, or its opposite if the joint is on the other side of O, as a constant length and a rest; m.
+
+    The length is the mean radius of the joint's orbit about O; None without one. Near a dead centre the rest is small
+    and free of the rounding of the whole.
+    """
     orbit = placement.course(joint).orbit
     if orbit is None:
         return None
@@ -295,7 +309,10 @@ AXES = ("x", "y")
 
 
 def toggle_axis(group, guide, throw):
-    """Axis, "x" or "y", across a guide through the pivot of a rocker that makes a toggle with its slider; or ""."""
+    """Axis, "x" or "y", across a guide that runs through the rocker's pivot along the other axis; "" for others.
+
+    There the rocker makes a toggle with a slider on its pin.
+    """
     b, h = group.coupler_length, group.rocker_length
     given = b, h, *group.pivot, guide.guide_offset, *throw.at
     if not all(map(checks.has_known_values, given)) or not (guide.is_level or type(guide.exact) is Axis):

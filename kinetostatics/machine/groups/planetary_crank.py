@@ -48,7 +48,11 @@ def place(joint, length, radius, line):
 
 
 def resolve(motion, load, pressure_angle):
-    """Reactions of arm and ring, and the tangential tooth force, for a `load` about the planet's axis (kernel)."""
+    """Reactions of arm and ring on the planet, and the tangential tooth force (kernel).
+
+    `load` is the wrench of all other loads about the planet's axis; its moment gives the tangential force. Either flank
+    presses the planet off the ring.
+    """
     arm, length = motion.arm, motion.length
     radial = (arm[0] / length, arm[1] / length)
     tangential = -number_or_zero(load.moment) / length

@@ -110,7 +110,11 @@ def motion_of(joint, rocker_length, pivot, coupler, rocker, *last):
 
 
 def resolve(motion, coupler_length, rocker_length, coupler_load, rocker_load):
-    """Forces at inner joint, pin and pivot, by moments of the coupler about A and of the rocker about O2 (kernel)."""
+    """Forces on the coupler at its inner joint, on the rocker at its pin and at its pivot (kernel).
+
+    Loads are wrenches about the links' reference joints, with the demands of further groups. Moments of the coupler
+    about A and of the rocker about O2 give the pin force by its parts along both links.
+    """
     q, p = motion.coupler.direction, motion.rocker.direction
     by_rocker = number_or_zero(rocker_load.moment) / rocker_length
     by_coupler = number_or_zero(coupler_load.moment) / coupler_length

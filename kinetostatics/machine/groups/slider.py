@@ -68,7 +68,10 @@ class SliderMotion(NamedTuple):
 
 
 def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
-    """Coupler and slider for an inner joint, of a swinging link or with a special kernel's `reached` (kernel)."""
+    """Coupler and slider for a given inner joint (kernel); a guide of None is +x, without offset.
+
+    `reached` comes from a special kernel for a pin of the crank; `swing` is given for a joint on a swinging link.
+    """
     position, first, second = (rotate_back(vector_or_zero(part), guide.direction) for part in joint)
     across = minus(guide.offset, position[1]) if swing is None else near_dead_centre.across(swing, guide)
     if reached is None:
@@ -89,7 +92,12 @@ def place(joint, coupler_length, guide, assembly, swing=None, reached=None):
 
 
 def resolve(motion, coupler_length, guide, coupler_load, slider_load, push):
-    """Forces at inner joint, pin and guide; `push` is the applied force along the guide (kernel)."""
+    """Forces on the coupler at its inner joint, on the slider at its pin and guide, and the guide's numbers (kernel).
+
+    `push` is the applied force along the guide; loads are all other wrenches about the links' reference joints, with
+    the demands of further groups. The slider's balance along the guide gives the pin force along it, moments of the
+    coupler about its inner joint the pin force across; the guide carries the rest.
+    """
     on_slider = rotate_back(vector_or_zero(slider_load.force), guide.direction)
     along = -plus(on_slider[0], push)
     across = number_or_zero(coupler_load.moment) / coupler_length + motion.sine * along
