@@ -59,12 +59,20 @@ def kinetic_energy(motion):
 
 
 def potential_energy(motion):
-    """Potential energy of weight and springs, (..., N), J; the energy of weight is 0 at the height of O."""
+    """Potential energy of weight and springs, (..., N), J; the energy of weight is 0 at the height of O.
+
+    Loads without a potential, such as process forces and dampers, contribute nothing.
+    """
     return _sum(item.potential(motion) for item in motion.loads if hasattr(item, "potential"))
 
 
 def load_torque(motion):
-    """Torque on the crank that balances weight and loads at the crank speed, without inertia, (..., N), N m."""
+    """Torque on the crank that balances weight and loads, without inertia, (..., N), N m.
+
+    Dampers and other loads by speed act at the scene's crank speed.
+
+    With reduced inertia J the balancing torque is J alpha + J' omega^2 / 2 + load torque.
+    """
     links = motion.placement.links
     weights = [
         product(link.body.mass, work(motion.gravity, first_at(links[name], _centre_arm(links[name], link.body))))

@@ -273,7 +273,11 @@ class FrictionSolver:
             yield FrictionLaw(name, friction.mu * way, reaction, kind, ((force, -1),))
 
     def _rolling_laws(self, name, pair, placement, rates):
-        """Force of friction along the curve of a roller, and the couple of its pin, opposite on the curve's link."""
+        """Force of friction along the curve of a roller, and the couple of its pin.
+
+        The pin carries the cam force and the force along the curve that turns the roller; the couple acts on the link
+        that carries the pin. The opposite of both acts on the link of the curve.
+        """
         position, _, _ = placement.joints[pair.joint]
         first = vector_or_zero(placement.rate_from(pair.joint, pair.against))
         rates[name] = speed = length(first)
@@ -413,7 +417,10 @@ class FrictionEquations:
         return found
 
     def _by_directions(self, reactions):
-        """Friction by channel for these directions, by elimination without pivoting: the pivots are near 1."""
+        """Friction by channel, from the linear equations with the directions of these reactions.
+
+        They are solved by elimination without pivoting, because the pivots are near 1.
+        """
         directed = [direction_of(law, parts) for law, parts in zip(self._laws, reactions, strict=True)]
         right = self._totals(map(_weighted, directed, self._free))
         columns = [self._totals(map(_weighted, directed, slopes)) for slopes in zip(*self._slopes, strict=True)]
