@@ -360,6 +360,8 @@ RUNNING_METHODS = (
 
 LONG_RUN_TIME = 0.2
 """Time, s, above which a run is timed only once."""
+LONG_FIRST_RUN = 3.0
+"""Time, s, above which it is the first run: compilation takes little of it."""
 COMPARED_ANGLES = 24
 """Crank angles at which speeds are compared."""
 
@@ -453,10 +455,12 @@ def _study(problem, methods, error, label, unit, repeats, progress):
     times: dict[Any, float] = {}  # s, of each run
 
     def measure(method, run):
-        run()
-        begun = time.perf_counter()
-        found = run()
-        times[run] = time.perf_counter() - begun
+        for _ in range(2):  # the first call may compile
+            begun = time.perf_counter()
+            found = run()
+            times[run] = time.perf_counter() - begun
+            if times[run] > LONG_FIRST_RUN:
+                break
         return {"error": float(error(found))}
 
     rows, runs = run_methods(methods, problem, label, measure, progress)
