@@ -251,7 +251,8 @@ class March:
             self.shift += direction * turned * period
             self.inside = start + direction * (gone if gone > 2.0 * ANGLE_TOLERANCE else 0.0)
         known = self._known(machine)
-        periods = known.periods_ahead(self.energy, reach) if self.inside == (0.0 if direction > 0.0 else period) else 1
+        begins = self.inside == start
+        periods = known.periods_ahead(self.energy, reach) if begins else 1
         edges, kinks = known.edges_ahead(periods)
         ahead = edges[:: int(direction)]
         ahead = ahead[direction * (ahead - self.inside) > ANGLE_TOLERANCE]
@@ -275,7 +276,7 @@ class March:
             return found and (found[0], far, found[1]), reach
         inner = ahead[direction * (far - ahead) > 0.0]
         part = Pieces(np.sort(np.concatenate([[self.inside], inner, [far]])), known.count)
-        whole = part.edges.size == edges.size and far == ahead[-1]
+        whole = begins and part.edges.size == edges.size and far == ahead[-1]
         guess = known.energy_ahead(part, self.energy) if whole else np.full(part.angle.shape, self.energy)
         found = self._attempt(pass_part, machine, part, kinks, self.energy, guess)
         if found is not None:
