@@ -23,7 +23,15 @@ from ..mechanics.quantities import magnitude
 from ..numbers import checks
 from ..solution.scene import mechanism_problem
 from ..solution.solution import Solution
-from .counterweights import Balanced, Counterweight, across_guide, along_guide, counterweight, guide_direction
+from .counterweights import (
+    Balanced,
+    Counterweight,
+    across_guide,
+    along_guide,
+    counterweight,
+    counterweight_on_either_side,
+    guide_direction,
+)
 from .lanchester import WithShafts, shafts
 from .linkage import crank_sliders, four_bar_shape
 
@@ -70,7 +78,7 @@ def full(mechanism, *, crank, coupler=None, rocker=None):
     >>> bool(abs(s.shaking_force).max() < 1e-9), round(found.added_mass, 1)  # N; kg is the price
     (True, 60.1)
     """
-    given = {name: item for name, item in [("coupler", coupler), ("rocker", rocker)] if item is not None}
+    given = {name: item for name, item in (("coupler", coupler), ("rocker", rocker)) if item is not None}
     _require_balanceable(mechanism)
     bars, chains = four_bar_shape(mechanism), crank_sliders(mechanism)
     if bars is None and not chains:
@@ -142,7 +150,8 @@ WEIGHT_RULES = {
     "weights moment": checks.Number("N**-1*m**-1"),
     "about": checks.Pair("m"),
 }
-NORMS = ("largest", "mean", "along", "across", "weighted", "largest moment", "largest weighted")
+GUIDE_FORCES = {"along": along_guide, "across": across_guide}
+NORMS = ("largest", "mean", *GUIDE_FORCES, "weighted", "largest moment", "largest weighted")
 MEAN_NORMS = ("mean", "weighted")
 """Norms other than a largest value over the turn."""
 MAX_REFINEMENTS = 8
@@ -162,8 +171,8 @@ class _ShakingSearch:
     """Norm of shaking force and moment over unbalances in units of `scale`, the largest static moment of a link.
 
     `weights` are of force and moment, 1/N and 1/(N m). `about` is the point of the moment, m. `size` is 2 if an
-    unbalance may be off its link's line, else 1. `turn` holds the crank angles of the norm, rad; `reference` is the
-    norm without counterweights, or 1. The largest moment may not exceed `moment_limit` at crank speed 1 rad/s, N m.
+    unbalance may be off its link's line, else 1. `turn` holds the crank angles, rad; `reference` is the norm without
+    counterweights, or 1. The largest moment may not exceed `moment_limit` at crank speed 1 rad/s, N m.
     """
 
     mechanism: Any
@@ -190,8 +199,7 @@ class _ShakingSearch:
             size = float(np.hypot(*unbalance))
             smallest, largest = weight.unbalances()
             kept = unbalance * (min(max(size, smallest), largest) / size) if size else np.array([-smallest, 0.0])
-            sided = weight if weight.arm is None else replace(weight, arm=float(np.copysign(weight.arm, kept[0])))
-            step = counterweight(result.mechanism, name, kept, sided)
+            step = counterweight_on_either_side(result.mechanism, name, kept, weight)
             result = Balanced(self.mechanism, step.mechanism, {**result.counterweights, **step.counterweights})
         return result
 
@@ -208,8 +216,8 @@ class _ShakingSearch:
         """Quantity of the norm at each crank angle, without sign."""
         if self.norm == "largest moment":
             return self.moments(solution)
-        if self.norm in ("along", "across"):
-            return np.abs((along_guide if self.norm == "along" else across_guide)(solution))
+        if self.norm in GUIDE_FORCES:
+            return np.abs(GUIDE_FORCES[self.norm](solution))
         force = magnitude(solution.shaking_force)
         if self.norm not in ("weighted", "largest weighted"):
             return force
@@ -310,7 +318,7 @@ def _search(mechanism, norm, phase, weights, about, angles, counterweights):
         checks.truth("phase", phase),
         *problems,
     )
-    if norm in ("along", "across"):
+    if norm in GUIDE_FORCES:
         guide_direction(mechanism)
     assembly.require_turn(mechanism)
     turn = np.linspace(0, 2 * np.pi * mechanism.turns, angles * mechanism.turns, endpoint=False)
@@ -430,13 +438,13 @@ def pareto(mechanism, *, points=9, crank_speed=1.0, phase=False, about=(0.0, 0.0
     high, least = outputs(found[0])[1], outputs(moment.best())[1]
     for level in np.linspace(high, least + LEVEL_TOLERANCE * high, points)[1:]:
         found.append(replace(force, moment_limit=level / speed**2).refined(found[-1]))
-    names = "largest shaking_force", "largest shaking_moment"
-    rows, designs = [], tuple(force.balanced(item) for item in found)
+    rows, designs = [], tuple(map(force.balanced, found))
     for item, design in zip(found, designs, strict=True):
-        row = dict(zip((f"{names[0]} [N]", f"{names[1]} [N m]"), outputs(item), strict=True))
+        row = dict(zip(("largest shaking_force [N]", "largest shaking_moment [N m]"), outputs(item), strict=True))
         for link, (mass, (along, across)) in design.counterweights.items():
             row |= {f"{link} unbalance along [kg m]": mass * along, f"{link} unbalance across [kg m]": mass * across}
         rows.append(row)
+    names = "largest shaking_force", "largest shaking_moment"
     return Front(names, pd.DataFrame(rows), designs, tuple(outputs(force.none)))
 
 
@@ -511,8 +519,7 @@ def in_two_planes(mechanism, *, left, right, reciprocating=0.0):
     second = (left.plane * force - couple) / (right.plane - left.plane)
     changed, weights = mechanism, []
     for weight, needed in ((left, -force - second), (right, second)):
-        arm = None if weight.arm is None else np.copysign(weight.arm, needed.real)
-        made = counterweight(changed, crank, (needed.real, needed.imag), replace(weight, arm=arm))
+        made = counterweight_on_either_side(changed, crank, (needed.real, needed.imag), weight)
         weights.append((weight.plane, *made.counterweights[crank]))
         changed = made.mechanism
     mass = sum(weight for _, weight, _ in weights)
@@ -533,9 +540,8 @@ def _set_static_moment(mechanism, link, moment, weight):
         share = moments[bars.coupler.link] / bars.coupler.length
         moments[bars.crank.link] -= share * bars.crank.length
         moments[bars.rocker.link] += share * bars.rocker.length
-    change = complex(*moment) - moments[link]
     own = mechanism.links[link]
-    target = change + (complex(*own.centre) * own.mass if weight.whole_link else 0.0)
+    target = complex(*moment) - moments[link] + (complex(*own.centre) * own.mass if weight.whole_link else 0.0)
     return counterweight(mechanism, link, (target.real, target.imag), weight)
 
 
@@ -552,17 +558,17 @@ def ratio_problem(ratio):
 def _require_balanceable(mechanism):
     """Refuse mechanisms that full and partial balancing do not cover."""
     _require_masses(mechanism)
-    if len(mechanism.groups) > 1 and mechanism.crank.length is not None:
+    if mechanism.crank.length is None:
+        pin = next(iter(mechanism.curves), "A")
+        carried = principal_points(mechanism).carried.get(pin, 0.0)
+        raise ParameterError(
+            f"the pin {pin} of a {mechanism.name} moves at a varying distance from O with {carried:g} kg on it, so no "
+            "counterweight on the crank balances it. Use `optimal`, or a plain crank-slider"
+        )
+    if len(mechanism.groups) > 1:
         raise ParameterError(
             f"full and partial balancing are for a crank with one group; the {mechanism.name} has "
             f"{len(mechanism.groups)}: use `optimal` or `counterweight`"
-        )
-    if mechanism.crank.length is None:
-        carried = principal_points(mechanism).carried
-        pin = next(iter(mechanism.curves), "A")
-        raise ParameterError(
-            f"the pin {pin} of a {mechanism.name} moves at a varying distance from O with {carried.get(pin, 0.0):g} kg "
-            "on it, so no counterweight on the crank balances it. Use `optimal`, or a plain crank-slider"
         )
 
 

@@ -113,13 +113,12 @@ class Options:
     def checked(cls, *problems, **given):
         """Checked options; one error lists their faults and the given `problems`."""
         asked = cls(**given)
-        sine, gravity = asked.sine, asked.gravity
         own = {name: (given[name], *rule) for name, rule in OPTION_RULES.items() if given.get(name) is not None}
         found = checks.single_numbers(
             OWNER,
             _harmonics_problem("cosine", asked.cosine),
-            _harmonics_problem("sine", sine) if sine or sine is False else None,
-            checks.truth("gravity", gravity),
+            _harmonics_problem("sine", asked.sine) if asked.sine or asked.sine is False else None,
+            checks.truth("gravity", asked.gravity),
             *problems,
             **own,
         )
@@ -128,41 +127,41 @@ class Options:
 
 def _harmonics_problem(name, value):
     """Sentence about a wrong number of harmonics, or None."""
-    wrong = checks.count(name, value)
-    if wrong or value <= MAX_HARMONICS:
-        return wrong
-    return f"{name} must be at most {MAX_HARMONICS}, got {value}"
+    wrong, too_many = checks.count(name, value), f"{name} must be at most {MAX_HARMONICS}, got {value}"
+    return wrong or (too_many if value > MAX_HARMONICS else None)
 
 
 def starting_machine(given, options) -> Start:
     """Start of a search, with the links and loads of a scene; an error for other machines or impossible strokes."""
     group, links = crank_slider_links(given)
     low, high = _ends(given, options.ends)
-    half, mean, law = (high - low) / 2, (high + low) / 2, CosineLaw((high - low) / 2, (high + low) / 2)
+    half, mean = (high - low) / 2, (high + low) / 2
+    law = CosineLaw(half, mean)
     offset = group.guide.guide_offset if options.guide_offset is None else options.guide_offset
     guide = Guide(group.guide.guide_angle, offset)
     share = group.coupler.centre[0] / group.coupler_length
     links["coupler"] = _coupler_of_length(group.coupler, law.coupler_length, share)
-    rate, springs = group.slider.mass * given.crank_speed * given.crank_speed, spring_masses(given.loads)
-    spring = Spring(rate, mean)
-    if springs:
+    spring = Spring(group.slider.mass * given.crank_speed * given.crank_speed, mean)
+    if springs := spring_masses(given.loads):
         mass = springs["slider"].whole
         spring = Spring.balancing(group.slider.mass, given.crank_speed, mean, spring_mass=mass)
-        rate = spring.stiffness
     replaced = Spring if options.gravity else (Spring, Gravity)
     loads = (*(item for item in given.loads if not isinstance(item, replaced)), spring)
     carried = group.coupler.mass * (1.0 - share)
     pulls = [item.vector for item in loads if isinstance(item, Gravity)]
     across = sum(float(cross(guide.direction, pull)) for pull in pulls)
     is_along = abs(across) <= SQUARE_TOLERANCE * sum(np.hypot(*pull) for pull in pulls)
-    weight = carried * (0.0 if is_along else across)
+    weight = 0.0 if is_along else carried * across
     length, reach = law.coupler_length, LENGTH_REACH * half
     vary = {
         "cam.cosine.0": (half - reach, half + reach),
-        **{f"cam.cosine.{order}": (-reach, reach) for order in range(1, options.cosine + 1)},
-        **{f"cam.sine.{order}": (-reach, reach) for order in range(1, options.sine + 1)},
+        **{
+            f"cam.{kind}.{order}": (-reach, reach)
+            for kind, count in (("cosine", options.cosine), ("sine", options.sine))
+            for order in range(1, count + 1)
+        },
         "coupler_length": (length - reach, length + reach),
-        "spring.stiffness": (0.0, MAX_STIFFNESS_RATIO * rate),
+        "spring.stiffness": (0.0, MAX_STIFFNESS_RATIO * spring.stiffness),
         "spring.free_position": (mean - reach, mean + reach),
     }
     first = frozenset(vary)
@@ -175,13 +174,9 @@ def starting_machine(given, options) -> Start:
     if options.counterweight is not None:
         arm = -carried * half / options.counterweight
         links["crank"] = replace(links["crank"], mass=options.counterweight, centre=(arm, 0.0))
-        first |= {OFFSET_PATH}
-        near = WEIGHT_REACH * arm
-        vary |= {
-            WEIGHT_PATHS[0]: (arm + near, arm - near),
-            WEIGHT_PATHS[1]: (near, -near),
-            OFFSET_PATH: (-reach, reach),
-        }
+        first, near = first | {OFFSET_PATH}, WEIGHT_REACH * arm
+        vary |= dict(zip(WEIGHT_PATHS, ((arm + near, arm - near), (near, -near)), strict=True))
+        vary[OFFSET_PATH] = -reach, reach
     angle = np.linspace(0.0, 2 * np.pi, 1024, endpoint=False)
     series = np.fft.rfft(law.radius(angle)[0]).real / angle.size
     harmonics = (series[0], *2 * series[1 : options.cosine + 1])

@@ -1,6 +1,6 @@
 """Counterweights on links: the mechanism with them, masses, arms, limits, and their effect on forces and torque."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -15,6 +15,7 @@ from ..mechanics.principal_points import principal_points
 from ..mechanics.quantities import label_of
 from ..numbers import checks
 from ..numbers.formatting import with_units
+from ..numbers.planar import cross, dot
 from ..solution.scene import solve
 from .linkage import crank_sliders
 
@@ -81,14 +82,8 @@ class Counterweight:
     def __post_init__(self):
         given = [name for name in ("mass", "arm") if getattr(self, name) is not None]
         either = None if len(given) == 1 else f"give either mass or arm, not {'both' if given else 'neither'}"
-        vars(self).update(
-            checks.check_values(
-                "counterweight",
-                COUNTERWEIGHT_RULES,
-                {name: getattr(self, name) for name in COUNTERWEIGHT_RULES},
-                either,
-            )
-        )
+        values = {name: getattr(self, name) for name in COUNTERWEIGHT_RULES}
+        vars(self).update(checks.check_values("counterweight", COUNTERWEIGHT_RULES, values, either))
         checks.require("counterweight", "arm must not be 0" if self.arm == 0 else None)
 
     def placed(self, unbalance):
@@ -116,11 +111,12 @@ class Counterweight:
         """Sentences about exceeded limits of a counterweight, beyond rounding."""
         if mass == 0:
             return
-        for limit, found, unit, sign, words in [
+        limits = [
             (self.largest_mass, mass, "kg", 1, "exceeds the largest mass"),
             (self.largest_arm, arm, "m", 1, "exceeds the largest arm"),
             (self.keep_out, arm, "m", -1, "lies inside the keep-out radius"),
-        ]:
+        ]
+        for limit, found, unit, sign, words in limits:
             if limit is not None and sign * (found - limit) > 1e-12 * limit:
                 yield f"{link}: the counterweight needs {found:.6g} {unit}, {words} {limit:g} {unit}"
 
@@ -213,21 +209,21 @@ class Balanced:
         angle = np.zeros(1)
         drive = {"crank_speed": crank_speed, "crank_acceleration": crank_acceleration, "loads": loads}
         before, after = (solve(item, angle, **drive) for item in (self.bare, self.mechanism))
-        rows = {"mass of links [kg]": [principal_points(item.mechanism).mass for item in (before, after)]}
         several = " of {}" if len(self.mechanism.guides) > 1 else ""
-        guide_rows = [
-            (f"largest shaking force {way} guide{several.format(slider)}", "N", partial(component, slider=slider))
-            for slider in self.mechanism.guides or (None,)
-            for way, component in (("along", along_guide), ("across", across_guide))
-        ]
-        for name, unit, quantity in [
-            ("largest shaking force", "N", "shaking_force"),
-            *guide_rows,
-            ("largest shaking moment", "N m", "shaking_moment"),
-            *((f"largest {label_of(before, joint)}", "N", joint) for joint in before.reactions),
-            ("largest balancing torque", "N m", "balancing_torque"),
-        ]:
-            rows[f"{name} [{unit}]"] = [abs(extremes(item, quantity).largest) for item in (before, after)]
+        quantities = {
+            "shaking force [N]": "shaking_force",
+            **{
+                f"shaking force {way} guide{several.format(slider)} [N]": partial(component, slider=slider)
+                for slider in self.mechanism.guides or (None,)
+                for way, component in (("along", along_guide), ("across", across_guide))
+            },
+            "shaking moment [N m]": "shaking_moment",
+            **{f"{label_of(before, joint)} [N]": joint for joint in before.reactions},
+            "balancing torque [N m]": "balancing_torque",
+        }
+        rows = {"mass of links [kg]": [principal_points(item.mechanism).mass for item in (before, after)]}
+        for name, quantity in quantities.items():
+            rows[f"largest {name}"] = [abs(extremes(item, quantity).largest) for item in (before, after)]
         table = pd.DataFrame.from_dict(rows, orient="index", columns=["before", "after"])
         table["change [%]"] = zeroed(100 * (table["after"] / table["before"] - 1), CHANGE_TOLERANCE)
         return table
@@ -269,12 +265,10 @@ def counterweight(mechanism, link, unbalance, weight):
             f"a plane is for a counterweight that is added to the crank, got {link}, whole_link={weight.whole_link}"
         )
     found = checks.check_values("counterweight", UNBALANCE_RULE, {"unbalance": unbalance}, problem)["unbalance"]
-    bare = mechanism.links[link]
-    wanted = np.array(found, dtype=float)
-    own = bare.mass * np.array(bare.centre)
+    bare, wanted = mechanism.links[link], np.array(found, dtype=float)
     if weight.whole_link:
         whole, _ = weight.placed(wanted)
-        mass, added = whole - bare.mass, wanted - own
+        mass, added = whole - bare.mass, wanted - bare.mass * np.array(bare.centre)
         if mass <= 0 and np.any(added != 0):
             raise ParameterError(
                 f"counterweight: the {link} with its counterweight would have {whole:.6g} kg, less than the "
@@ -284,11 +278,14 @@ def counterweight(mechanism, link, unbalance, weight):
     else:
         mass, place = weight.placed(wanted)
     checks.require("counterweight", *weight.problems(link, mass, float(np.hypot(*place))))
-    if weight.plane is None:
-        changed = mechanism.with_link(link, bare.joined(mass, place))
-    else:
-        changed = mechanism.with_link(link, Rotor.of(bare).joined(mass, place, weight.plane))
-    return Balanced(mechanism, changed, {link: (mass, place)})
+    new = bare.joined(mass, place) if weight.plane is None else Rotor.of(bare).joined(mass, place, weight.plane)
+    return Balanced(mechanism, mechanism.with_link(link, new), {link: (mass, place)})
+
+
+def counterweight_on_either_side(mechanism, link, unbalance, weight):
+    """As `counterweight`, with the arm of the weight on the side of the unbalance (along, across)."""
+    arm = None if weight.arm is None else float(np.copysign(weight.arm, unbalance[0]))
+    return counterweight(mechanism, link, tuple(unbalance), replace(weight, arm=arm))
 
 
 def _signed_distance(place):
@@ -298,13 +295,12 @@ def _signed_distance(place):
 
 def along_guide(solution, slider=None):
     """Shaking force along a guide, N."""
-    return np.tensordot(guide_direction(solution.mechanism, slider), solution.shaking_force, 1)
+    return dot(guide_direction(solution.mechanism, slider), solution.shaking_force)
 
 
 def across_guide(solution, slider=None):
     """Shaking force across a guide, to the left of it, N."""
-    x, y = guide_direction(solution.mechanism, slider)
-    return np.tensordot((-y, x), solution.shaking_force, 1)
+    return cross(guide_direction(solution.mechanism, slider), solution.shaking_force)
 
 
 def guide_direction(mechanism, slider=None):
@@ -369,4 +365,4 @@ def balancing_table(reference, variants, sampling=None):
 def _largest_by_size(values):
     """Value of largest magnitude, with its sign; of values equal to rounding the first."""
     size = np.abs(values)
-    return values[np.flatnonzero(size >= (1 - 1e-12) * size.max())[0]]
+    return values[np.argmax(size >= (1 - 1e-12) * size.max())]

@@ -22,7 +22,7 @@ from ..mechanics.principal_points import principal_points
 from ..numbers import checks
 from ..solution.scene import Scene, scene_problem
 from ..solution.solution import Solution
-from .counterweights import Balanced, Counterweight, counterweight
+from .counterweights import Balanced, Counterweight, counterweight_on_either_side
 
 ZERO = 1e-12
 """Terms of the series that count as zero, relative to the mass of the links times the lengths."""
@@ -145,8 +145,8 @@ def shafts(scene, harmonics=(1, 2), *, at=(0.0, 0.0), crank=None):
         if abs(term) <= least:
             continue
         if n == 1.0 and crank is not None:
-            arm = None if crank.arm is None else float(np.copysign(crank.arm, needed.real))
-            balanced = counterweight(scene.mechanism, CRANK, (needed.real, needed.imag), replace(crank, arm=arm))
+            unbalance = needed.real, needed.imag
+            balanced = counterweight_on_either_side(scene.mechanism, CRANK, unbalance, crank)
         else:
             found.append(BalanceShaft(abs(needed), n, float(np.angle(needed)), places.get(n, (0.0, 0.0))))
     made = scene.mechanism if balanced is None else balanced.mechanism

@@ -61,6 +61,7 @@ def crank_sliders(mechanism) -> tuple[CrankSlider, ...]:
     )
 
 
+FULL_TURN = ((0.0, TURN),)
 CHANGE_POINT_TOLERANCE = 1e-12
 """Difference of the two sums of lengths, relative to them, below which a four-bar has a change point."""
 
@@ -92,13 +93,8 @@ class Grashof:
     intervals: tuple[tuple[float, float], ...]
 
 
-KIND_BY_SHORTEST = {
-    "crank": "crank-rocker",
-    "coupler": "double-rocker",
-    "rocker": "rocker-crank",
-    "frame": "double-crank",
-}
-"""Kind of a Grashof linkage by its shortest link."""
+KINDS_BY_SHORTEST = "crank-rocker", "double-rocker", "rocker-crank", "double-crank"
+"""Kinds of a Grashof linkage whose shortest link is the crank, coupler, rocker, frame."""
 
 
 def grashof(mechanism):
@@ -130,28 +126,21 @@ def grashof(mechanism):
     ('triple-rocker', [[3.9104, 8.656]])
     """
     crank, coupler, rocker, pivot = four_bar_of(mechanism)
-    frame = np.hypot(*pivot)
-    lengths = {"crank": crank.length, "coupler": coupler.length, "rocker": rocker.length, "frame": frame}
-    ends = {
-        "crank": (crank.start, crank.end),
-        "coupler": (coupler.start, coupler.end),
-        "rocker": (rocker.end, rocker.start),
-        "frame": (rocker.start, crank.start),
-    }
-    if any(np.ndim(length) for length in lengths.values()):
+    lengths = crank.length, coupler.length, rocker.length, np.hypot(*pivot)
+    if any(map(np.ndim, lengths)):
         raise ParameterError("Grashof's rule is for one design at a time, got a batch of lengths")
-    if frame == 0:
+    if not lengths[-1]:
         raise ParameterError("Grashof's rule needs a frame: the rocker's pivot lies at O")
-    ordered = sorted(lengths, key=lambda name: lengths[name])
-    outer = lengths[ordered[0]] + lengths[ordered[3]]
-    inner = lengths[ordered[1]] + lengths[ordered[2]]
+    ends = (crank.start, crank.end), (coupler.start, coupler.end), (rocker.end, rocker.start)
+    links = list(zip(lengths, KINDS_BY_SHORTEST, (*ends, (rocker.start, crank.start)), strict=True))
+    shortest, *between, longest = ordered = sorted(links, key=lambda link: link[0])
+    outer, inner = shortest[0] + longest[0], sum(length for length, *_ in between)
     joints: tuple[str, ...]
-    kind, joints = KIND_BY_SHORTEST[ordered[0]], ends[ordered[0]]
+    _, kind, joints = shortest
     change_point = abs(outer - inner) <= CHANGE_POINT_TOLERANCE * inner
     if change_point:
-        kind = "change-point"
-        shortest = (name for name in ordered if lengths[name] <= lengths[ordered[0]] * (1 + CHANGE_POINT_TOLERANCE))
-        joints = tuple(dict.fromkeys(joint for name in shortest for joint in ends[name]))
+        kind, limit = "change-point", shortest[0] * (1 + CHANGE_POINT_TOLERANCE)
+        joints = tuple(dict.fromkeys(joint for length, _, pair in ordered if length <= limit for joint in pair))
     elif outer > inner:
         kind, joints = "triple-rocker", ()
     slack = 8 * CHANGE_POINT_TOLERANCE if change_point else 0.0
@@ -170,29 +159,28 @@ def four_bar_of(mechanism):
 def _closed_intervals(lengths, frame_angle, slack):
     """Crank-angle intervals with the distance A-O2 between difference and sum of coupler and rocker, rad.
 
-    At the distance D the crank is theta from the frame line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b). Values
-    within `slack` of 0 or 1, from rounded lengths of a change-point linkage, become 0 or 1.
+    `lengths` are those of crank r, coupler, rocker and frame b. At the distance D the crank is theta from the frame
+    line, sin^2(theta / 2) = (D^2 - (r - b)^2) / (4 r b). Values within `slack` of 0 or 1, from rounded lengths of a
+    change-point linkage, become 0 or 1.
     """
-    r, b = lengths["crank"], lengths["frame"]
+    r, coupler, rocker, b = lengths
 
     def at_distance(distance):
         square = (distance - (r - b)) * (distance + (r - b)) / (4 * r * b)
         return 2 * asin(sqrt(0.0 if square <= slack else 1.0 if square >= 1 - slack else square))
 
-    near = at_distance(abs(lengths["coupler"] - lengths["rocker"]))
-    far = at_distance(lengths["coupler"] + lengths["rocker"])
-    turn = 2 * pi
+    near, far = at_distance(abs(coupler - rocker)), at_distance(coupler + rocker)
     if far <= near:
         return ()
     if near == 0 and far == pi:
-        return ((0.0, turn),)
+        return FULL_TURN
+    pieces = [(near, far), (-far, -near)]
     if near == 0:
-        pieces = [(frame_angle - far, frame_angle + far)]
+        pieces = [(-far, far)]
     elif far == pi:
-        pieces = [(frame_angle + near, frame_angle + turn - near)]
-    else:
-        pieces = [(frame_angle + near, frame_angle + far), (frame_angle - far, frame_angle - near)]
-    return tuple(sorted((start % turn, start % turn + end - start) for start, end in pieces))
+        pieces = [(near, TURN - near)]
+    ends = ((frame_angle + start, frame_angle + end) for start, end in pieces)
+    return tuple(sorted((start % TURN, start % TURN + end - start) for start, end in ends))
 
 
 __all__ = [
@@ -213,7 +201,7 @@ CHAIN_UNIT_RULES = {
     "pivot_x": checks.Optional(checks.Number("m")),
 }
 ANGLE_RULE, START_RULE = {"angle": checks.Number("rad", table=True)}, {"start": checks.Number("rad")}
-QUARTER, FULL_TURN = pi / 2, ((0.0, TURN),)
+QUARTER = pi / 2
 ROCKER_ANGLES = 720
 """Crank angles per turn that make the rocker angle continuous."""
 
@@ -264,20 +252,7 @@ def chain_unit(crank_length, coupler_length, rocker_length, *, pivot_x=None, **l
 def chain_unit_angle(angle):
     """Crank angle counted clockwise from +y as one counted counter-clockwise from +x, and the reverse, rad.
 
-    Parameters
-    ----------
-    angle : float or array
-        rad.
-
-    Returns
-    -------
-    float or array
-        rad.
-
-    Raises
-    ------
-    ParameterError
-        The angle is not a number.
+    The angle is a number or an array. Raises `ParameterError` for anything else.
 
     Examples
     --------
@@ -338,20 +313,7 @@ def _clockwise(solution, link, beginning):
 def transmission_angle(solution):
     """Angle between coupler and rocker at B, (..., N), in (0, pi), rad; forces grow as it nears 0 or pi.
 
-    Parameters
-    ----------
-    solution : Solution
-        Solution of a four-bar.
-
-    Returns
-    -------
-    array (..., N)
-        rad.
-
-    Raises
-    ------
-    ParameterError
-        The solution is not of a four-bar.
+    The solution, and errors, as for `rocker_angle`.
 
     Examples
     --------
@@ -496,31 +458,28 @@ def characteristics(solutions, reference):
     """
     import pandas as pd
 
-    named = isinstance(solutions, Mapping)
+    if not isinstance(solutions, Mapping) or not solutions:
+        raise ParameterError(f"characteristics: solutions must be a dict of name to Solution, got {solutions!r}")
     checks.require(
         "characteristics",
-        None if named and solutions else f"solutions must be a dict of name to Solution, got {solutions!r}",
-        checks.choice("reference", reference, tuple(solutions)) if named and solutions else None,
-        *(_speed_problem(name, solution) for name, solution in (solutions.items() if named else ())),
+        checks.choice("reference", reference, tuple(solutions)),
+        *(_speed_problem(name, solution) for name, solution in solutions.items()),
     )
+    amplitude, speed = "largest rocker angle psi [deg]", "largest relative rocker speed"
     columns = {}
     for name, solution in solutions.items():
-        found = swing(solution)
-        fastest = abs(extremes(solution, f"{_bars_of(solution).rocker.link}_rate").largest / solution.crank_speed)
+        found, rate = swing(solution), f"{_bars_of(solution).rocker.link}_rate"
         transmission = np.degrees(extremes(solution, transmission_angle).range)
         columns[name] = {
-            "largest rocker angle psi [deg]": np.degrees(found.largest),
+            amplitude: np.degrees(found.largest),
             "smallest rocker angle psi [deg]": np.degrees(found.smallest),
             "asymmetry |psi_min| / psi_max": found.asymmetry,
-            "largest relative rocker speed": fastest,
+            speed: abs(extremes(solution, rate).largest / solution.crank_speed),
             "smallest transmission angle [deg]": transmission[0],
             "largest transmission angle [deg]": transmission[1],
         }
     table = pd.DataFrame(columns).rename_axis("quantity")
-    for ratio, quantity in [
-        ("amplitude ratio", "largest rocker angle psi [deg]"),
-        ("speed ratio", "largest relative rocker speed"),
-    ]:
+    for ratio, quantity in (("amplitude ratio", amplitude), ("speed ratio", speed)):
         table.loc[f"{ratio} to {reference}"] = table.loc[quantity] / table.loc[quantity, reference]
     return table
 

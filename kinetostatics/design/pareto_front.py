@@ -85,6 +85,8 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
     >>> bool((front.table.iloc[:, 0].diff().dropna() > 0).all())
     True
     """
+    import pandas as pd
+
     texts = isinstance(minimise, list | tuple) and all(isinstance(text, str) for text in minimise)
     checks.require(
         "pareto",
@@ -113,38 +115,23 @@ def pareto(source, vary, minimise, limits=(), *, points=9, variant=None, referen
 
     ends = [best(0), best(1)]
     levels = [outputs(end.duties())[1] for end in ends]
-    logarithmic = second.ratio and min(levels) > 0
-    first_level, last_level = map(float, levels)
-    between = (np.geomspace if logarithmic else np.linspace)(first_level, last_level, points)
-    found, last = [ends[0]], ends[0]
-    relation = ">=" if pair[1][1] else "<="
-    for level in between[1:-1]:
-        limit = Constraint(second, relation, float(level), duty=mean)
+    spaced: Any = np.geomspace if second.ratio and min(levels) > 0 else np.linspace
+    found, relation = ends[:1], ">=" if pair[1][1] else "<="
+    for level in spaced(*levels, points)[1:-1].tolist():
+        limit = Constraint(second, relation, level, duty=mean)
         try:
-            last = best(0, (limit,), last.values)
+            found.append(best(0, (limit,), found[-1].values))
         except DesignError:
-            last = best(0, (limit,), ends[1].values)
-        found.append(last)
+            found.append(best(0, (limit,), ends[1].values))
     found.append(ends[1])
-    return Front(
-        (str(first), str(second)),
-        _front_table(found, outputs, (first, second)),
-        tuple(found),
-        tuple(outputs(duties)),
-    )
+    columns = first.column, second.column
+    rows = [
+        dict(zip(columns, outputs(design.duties()), strict=True)) | design.numbers()["after"].to_dict()
+        for design in found
+    ]
+    return Front((str(first), str(second)), pd.DataFrame(rows), tuple(found), tuple(outputs(duties)))
 
 
 def points_problem(points):
     """Sentence on a wrong number of designs on a front, or None."""
     return checks.count("points", points) or (None if points > 1 else f"points must be at least 2, got {points}")
-
-
-def _front_table(found, outputs, pair):
-    import pandas as pd
-
-    columns = [output.column for output in pair]
-    rows = [
-        dict(zip(columns, outputs(design.duties()), strict=True)) | design.numbers()["after"].to_dict()
-        for design in found
-    ]
-    return pd.DataFrame(rows)

@@ -106,6 +106,12 @@ MAX_CACHED_DESIGNS = 8
 """Number of designs with cached curves."""
 
 
+def cached_by_design(function, count=MAX_CACHED_DESIGNS):
+    """The function, whose last argument is the design's values, with its last results kept."""
+    cached = lru_cache(count)(lambda design, *others: function(*others, np.frombuffer(design)))
+    return lambda *given: cached(given[-1].tobytes(), *given[:-1])
+
+
 class Problem:
     """Outputs of a scene as functions of the numbers that vary.
 
@@ -125,6 +131,8 @@ class Problem:
     ----------
     table_limits : tuple of Constraint
         Limits that keep sliders of varied motion within load tables over travel.
+    curves : function
+        Curve by quantity of a design; NaN where it cannot be built.
     """
 
     def __init__(self, source, vary, quantities, reference=None, angles=720, engine="numpy"):
@@ -149,13 +157,9 @@ class Problem:
             )
         self.evaluations = 0
         self.stepped: Any = None
-        self._curves = lru_cache(MAX_CACHED_DESIGNS)(lambda design: self._computed(np.frombuffer(design)))
-        self._parted = lru_cache(MAX_CACHED_DESIGNS * len(self.quantities))(
-            lambda output, design: self._on_pieces(output, np.frombuffer(design))
-        )
-        self._numbers = lru_cache(MAX_CACHED_DESIGNS)(
-            lambda output, design: self._number(output, np.frombuffer(design))
-        )
+        self.curves = cached_by_design(self._computed)
+        self._curve_on_pieces = cached_by_design(self._on_pieces, MAX_CACHED_DESIGNS * len(self.quantities))
+        self._number = cached_by_design(self._number_and_slopes)
         self.units, self.parts, self.shares = source.units, {"": self}, {"": 1.0}
         self._of_reference = cache(lambda output: true_value(output, scene_of(reference)))
         self._shared = [place for place, name in enumerate(self.names) if name in SHARED_NUMBERS]
@@ -169,8 +173,7 @@ class Problem:
     @property
     def start(self):
         """Values of the source, within the bounds."""
-        own = self.source.parameters
-        scene = scene_of(self.source).parameters
+        own, scene = self.source.parameters, scene_of(self.source).parameters
         values = [value if isinstance(value := own[name], float) else scene[name] for name in self.names]
         return np.clip(np.array(values, dtype=float), self.low, self.high)
 
@@ -186,10 +189,6 @@ class Problem:
         """Scene of a design."""
         return scene_of(self.source.varied(self.numbers(values)))
 
-    def curves(self, values):
-        """Curve by quantity of a design; NaN where it cannot be built."""
-        return self._curves(values.tobytes())
-
     @cached_property
     def _kinked(self):
         """Quantities with kinks."""
@@ -200,7 +199,7 @@ class Problem:
         """Curve of an output's quantity; on pieces between kinks if it has some."""
         if output.quantity not in self._kinked:
             return self.curves(values)[output.quantity]
-        return self._parted(without_ratio(output), values.tobytes())
+        return self._curve_on_pieces(without_ratio(output), values)
 
     def _on_pieces(self, output, values):
         self.evaluations += 1
@@ -222,7 +221,7 @@ class Problem:
         if callable(output):
             return output(values)
         if isinstance(output, SolutionNumber):
-            return self._numbers(output, values.tobytes())
+            return self._number(output, values)
         found, slopes = measures.reduced(output.reduction, self.curve(output, values))
         if not output.ratio:
             return found, slopes
@@ -233,14 +232,12 @@ class Problem:
             above, rises[self._shared] = self._compared.output(plain, values[self._shared])
         return above / found, (rises - above / found * slopes) / found
 
-    def _number(self, output, values):
+    def _number_and_slopes(self, output, values):
         """Number of the solution of a design, and its derivatives by central differences; NaN if there is none."""
-        step = DIFFERENCE_STEP * (self.high - self.low)
-        sides = [np.clip(values + side * np.diag(step), self.low, self.high) for side in (1.0, -1.0)]
-        found = [self._value(output, design) for design in (values, *np.concatenate(sides))]
-        count = len(self.names)
-        apart = np.diagonal(sides[0] - sides[1])
-        return found[0], (np.array(found[1 : count + 1]) - np.array(found[count + 1 :])) / apart
+        step = np.diag(DIFFERENCE_STEP * (self.high - self.low))
+        sides = [np.clip(values + side, self.low, self.high) for side in (step, -step)]
+        above, below = (np.array([self._value(output, design) for design in side]) for side in sides)
+        return self._value(output, values), (above - below) / np.diagonal(sides[0] - sides[1])
 
     def _value(self, output, values):
         self.evaluations += 1
@@ -250,6 +247,7 @@ class Problem:
             return np.nan
 
     def _computed(self, values):
+        """Curve by quantity of a design; NaN where it cannot be built."""
         self.evaluations += 1
         nothing = np.full(self.angle.size, np.nan)
         empty = measures.Curve(nothing, np.full((len(self.names), self.angle.size), np.nan), self.turns)

@@ -7,6 +7,7 @@ every design. The quantile is the weighted mean of the ordered samples (Harrell 
 import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -114,14 +115,13 @@ def deviations(spread, known, count):
     shares, deviations = set(), {}
     for (path, (distribution, unit)), column in zip(found.items(), uniform.T, strict=True):
         deviations[path] = distribution.ppf(column) - distribution.median()
-        if unit.strip() in ("%", "percent"):
-            shares.add(path)
-            deviations[path] = deviations[path] * base_factor(unit)
-            continue
+        is_share = unit.strip() in ("%", "percent")
         try:
-            deviations[path] = deviations[path] * factor(unit, known[path])
+            deviations[path] *= base_factor(unit) if is_share else factor(unit, known[path])
         except ValueError as error:
             raise ParameterError(f"spread: {path}: {error}") from None
+        if is_share:
+            shares.add(path)
     return shares, deviations
 
 
@@ -166,7 +166,7 @@ class SampledOutput:
         self.paths = tuple(dict.fromkeys([*designed, *spread.spreads, *[SPEED] * bool(spread.trim)]))
         self._nominal = scene.parameters
         self._set_output(output)
-        self._reference_cache: dict = {}
+        self._reference_curves = lru_cache(MAX_CACHED_BLOCKS)(self._solved_reference)
         self.weights = harrell_davis_weights(spread.quantile, self.count)
         self.roughness = TRIMMED_ROUGHNESS if spread.trim else 0.0
         if spread.trim:
@@ -255,7 +255,7 @@ class SampledOutput:
             found = self._on_pieces(scene_of(self.problem.source), numbers)
             own = np.broadcast_to(found, len(next(iter(numbers.values()))))
         else:
-            own = self._reduced(self._values(numbers))
+            own = self.output.reduced(self._values(numbers), self.turns)
         return self._reference_outputs(numbers) / own if self.output.ratio else own, own, numbers
 
     def _on_pieces(self, scene, numbers):
@@ -320,22 +320,18 @@ class SampledOutput:
         reference, shared = scene_of(self.problem.reference), self._shared_numbers(numbers)
         if has_kinks(unchecked_turn(reference.varied(shared), 1), self.output.quantity):
             return self._on_pieces(reference, shared)
-        return self._reduced(self._reference_curves(numbers))
+        return self.output.reduced(self._reference_values(numbers), self.turns)
 
-    def _reduced(self, curves):
-        """Reduction (samples,) of curves (samples, N), without the ratio to the reference."""
-        return self.output.reduced(curves, self.turns)
+    def _reference_values(self, numbers):
+        """Values of the reference (samples, N), with the deviations of the numbers that it shares."""
+        shared = ((path, values.tobytes()) for path, values in self._shared_numbers(numbers).items())
+        found = self._reference_curves(self.output.quantity, *shared)
+        return np.broadcast_to(found, (len(next(iter(numbers.values()))), self.angle.size))
 
-    def _reference_curves(self, numbers):
-        """Curves of the reference (samples, N), with the deviations of the numbers that it shares."""
-        shared = self._shared_numbers(numbers)
-        key = self.output.quantity, *((path, values.tobytes()) for path, values in shared.items())
-        if key not in self._reference_cache:
-            found = values_of(scene_of(self.problem.reference).varied(shared).solve(self.angle), self.output.quantity)
-            while len(self._reference_cache) >= MAX_CACHED_BLOCKS:
-                self._reference_cache.pop(next(iter(self._reference_cache)))
-            self._reference_cache[key] = found
-        return np.broadcast_to(self._reference_cache[key], (len(next(iter(numbers.values()))), self.angle.size))
+    def _solved_reference(self, quantity, *shared):
+        """Values of a quantity of the reference with some numbers, pairs of path and bytes."""
+        numbers = {path: np.frombuffer(values)[:, None] for path, values in shared}
+        return values_of(scene_of(self.problem.reference).varied(numbers).solve(self.angle), quantity)
 
     def _shared_numbers(self, numbers):
         """The samples' crank speed and numbers that spread, if the reference has them too."""
@@ -346,11 +342,12 @@ class SampledOutput:
         """As `_block`, at the best speed of each sample within the trim; values are linear in the squared speed."""
         squares = (1.0 - self.spread.trim) ** 2, (1.0 + self.spread.trim) ** 2
         ends = [self._at_speed(numbers, np.sqrt(square)) for square in squares]
-        sides = [self._values, self._reference_curves][: 1 + self.output.ratio]
+        sides = [self._values, self._reference_values][: 1 + self.output.ratio]
         curves = [(low, high - low) for low, high in ([side(at) for at in ends] for side in sides)]
 
         def outputs(share, some=slice(None)):
-            own, *above = (self._reduced(low[some] + share[:, None] * rise[some]) for low, rise in curves)
+            mixed = (low[some] + share[:, None] * rise[some] for low, rise in curves)
+            own, *above = (self.output.reduced(values, self.turns) for values in mixed)
             return above[0] / own if above else own, own
 
         share = _best_shares(lambda *at: self.sign * outputs(*at)[0], len(numbers[SPEED]))

@@ -13,6 +13,7 @@ import numpy as np
 from ..cycle.reductions import Output
 from . import measures
 from .constraints import MEAN, Constraint
+from .problem import cached_by_design
 
 MAX_ROUNDS = 8
 """Rounds of a search; each rescales the variables."""
@@ -69,9 +70,8 @@ def search_from(problem, goal, limits, start, rounds=MAX_ROUNDS) -> SearchEnd:
 
 def better(one, other):
     """The better of two designs: first by limits, then by goal."""
-    if max(one.missed, other.missed) <= LIMIT_TOLERANCE:
-        return min(one, other, key=lambda found: found.goal)
-    return min(one, other, key=lambda found: found.missed)
+    kept = max(one.missed, other.missed) <= LIMIT_TOLERANCE
+    return min(one, other, key=lambda found: found.goal if kept else found.missed)
 
 
 def _round(problem, goal, limits, start, change=FIRST_TOLERANCE):
@@ -200,10 +200,10 @@ class _ScaledProblem:
 
     def __init__(self, problem, goal, limits, start):
         self.problem, self.start, self.goal_of, self.limits = problem, start, goal, limits
-        peaks = list(problem.parts) if is_peak(*goal) else []
-        self.levels = [(problem.parts[name], problem.shares[name]) for name in peaks]
+        pairs = [(part, problem.shares[name]) for name, part in problem.parts.items()]
+        self.levels = pairs if is_peak(*goal) else []
         self.raised = len(self.levels)  # each peak is bounded by an extra unknown
-        self._last: tuple[Any, Any] = None, None
+        self._margins = cached_by_design(self._computed_margins, 1)
         first = self.reached(start)
         self.unit = abs(first) or 1.0
         count = start.size
@@ -218,12 +218,9 @@ class _ScaledProblem:
 
     def _turn(self):
         """Directions of the unit box, each scaled to change goal and limits by about their size, within the box."""
-        rows, goal = [], self.goal_of.output
         # derivatives of limits and goal along the period, in units of their sizes
-        for duty, output, unit in [
-            *((item.duty, item.output, item.scale) for item in self.limits),
-            (MEAN, goal, self.unit),
-        ]:
+        rows, wanted = [], [(limit.duty, limit.output, limit.scale) for limit in self.limits]
+        for duty, output, unit in (*wanted, (MEAN, self.goal_of.output, self.unit)):
             problem = self.problem.duty(duty)
             if not isinstance(output, Output):
                 rows.append(problem.output(output, self.start)[1][None] / unit)
@@ -263,16 +260,12 @@ class _ScaledProblem:
 
     def inside(self, unknowns):
         """Margins of the bounds, in units of their range."""
-        values, problem = self.values(unknowns), self.problem
-        reach = problem.high - problem.low
-        return np.concatenate([(values - problem.low) / reach, (problem.high - values) / reach])
+        values, low, high = self.values(unknowns), self.problem.low, self.problem.high
+        return np.concatenate([values - low, high - values]) / np.tile(high - low, 2)
 
     def margins(self, unknowns, equal):
         """Margins of equalities, or of the other limits, in units of their sizes; derivatives by the unknowns."""
-        key = unknowns.tobytes()
-        if self._last[0] != key:
-            self._last = key, self._computed_margins(unknowns)
-        margins, rows, equalities = self._last[1]
+        margins, rows, equalities = self._margins(unknowns)
         return margins[equalities == equal], rows[equalities == equal]
 
     def _computed_margins(self, unknowns):

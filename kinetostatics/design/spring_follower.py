@@ -49,9 +49,8 @@ def spring_stretch(energy, level, mass, stiffness):
     """
     rows = chebyshev.chebder(energy.coefficients, axis=1) * (2.0 / np.diff(energy.edges)[:, None])
     slope = Panels(energy.edges, np.pad(rows, ((0, 0), (0, 1))))
-    turns = slope.roots
+    turns, found = slope.roots, []
     values = energy(turns)
-    found = []
     for place, angle in enumerate(turns):
         before, after = turns[place - 1], turns[(place + 1) % turns.size]
         if values[place] > values[place - 1]:
@@ -62,12 +61,10 @@ def spring_stretch(energy, level, mass, stiffness):
             for stop in (before, after):
                 found += _march_panels(energy, slope, angle, stop, level, mass, stiffness)
     first = turns[int(np.argmax(values))]
-    moved = sorted(
-        (first + np.mod(low - first + 1e-9, energy.period) - 1e-9, high - low, row) for low, high, row in found
-    )
-    edges = [low for low, _, _ in moved]
-    edges[0] = first
-    return Panels(np.array([*edges, first + energy.period]), np.array([row for *_, row in moved]))
+    starts = np.mod([low - first + 1e-9 for low, *_ in found], energy.period) - 1e-9
+    order = np.argsort(starts)
+    edges = first + np.array([0.0, *starts[order[1:]], energy.period])
+    return Panels(edges, np.array([found[place][-1] for place in order]))
 
 
 def _march_panels(energy, slope, start, stop, level, mass, stiffness):
@@ -117,11 +114,11 @@ def _collocate(rest, width, share, value):
         try:
             step = np.linalg.solve(matrix, off)
         except np.linalg.LinAlgError:
-            return None
+            break
         x = x - step
         size = np.max(np.abs(x))
         if not np.isfinite(size):
-            return None
+            break
         if np.max(np.abs(step)) <= NEWTON_TOLERANCE * size * 30:
             tail = np.max(np.abs((_FIT @ x)[-3:]))
             return x if tail <= SERIES_TOLERANCE * size and np.all(x > 0.0) else None

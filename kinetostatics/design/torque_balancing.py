@@ -89,9 +89,13 @@ class TorqueBalancing:
         return float(self.spring.stiffness * self.stretch[0])
 
     @cached_property
+    def _means(self):
+        return tuple(map(_torque_means, self._solutions))
+
+    @property
     def uneven(self):
         """Mean of ``abs(T - mean(T))`` before and after, N m, each from a solution of its scene."""
-        return tuple(_torque_means(solution)[1] for solution in self._solutions)
+        return tuple(uneven for _, uneven in self._means)
 
     @property
     def remaining(self):
@@ -100,24 +104,27 @@ class TorqueBalancing:
 
     @cached_property
     def _solutions(self):
-        """Solutions before and after."""
         return self.reference.solve(1), self.scene.solve(1)
 
-    def _peak(self, quantity, find):
-        """Extreme of a follower quantity, chosen by `find`, a `Peak`."""
+    def _ends(self, quantity):
+        """Smallest and largest value of a follower quantity, each a `Peak`."""
         found = extrema(self._solutions[1], quantity + self.follower.label)
-        place = int(find(found.value))
-        return Peak(float(found.value[place]), float(found.angle[place]))
+        ends = (int(np.argmin(found.value)), int(np.argmax(found.value)))
+        return tuple(Peak(float(found.value[place]), float(found.angle[place])) for place in ends)
 
     @cached_property
+    def _contact_forces(self):
+        return self._ends("contact_force")
+
+    @property
     def least_contact_force(self) -> Peak:
         """Least contact force, N, and its crank angle."""
-        return self._peak("contact_force", np.argmin)
+        return self._contact_forces[0]
 
-    @cached_property
+    @property
     def largest_contact_force(self) -> Peak:
         """Largest contact force, N, and its crank angle."""
-        return self._peak("contact_force", np.argmax)
+        return self._contact_forces[1]
 
     @property
     def lifts_off(self):
@@ -127,7 +134,7 @@ class TorqueBalancing:
     @cached_property
     def pressure_angle(self) -> Peak:
         """Largest pressure angle, without sign, rad."""
-        peak = self._peak("pressure_angle", lambda values: np.argmax(np.abs(values)))
+        peak = max(self._ends("pressure_angle"), key=lambda peak: abs(peak.value))
         return peak._replace(value=abs(peak.value))
 
     @cached_property
@@ -140,16 +147,16 @@ class TorqueBalancing:
     @cached_property
     def cam_radius(self) -> Peak:
         """Smallest distance of the roller centre from O, m, and the crank angle."""
-        return self._peak("cam_radius", np.argmin)
+        return self._ends("cam_radius")[0]
 
     def table(self):
         """Torque and bearing force before and after, as a DataFrame."""
         import pandas as pd
 
         columns = {}
-        for name, solution, uneven in zip(("before", "after"), self._solutions, self.uneven, strict=True):
+        for name, solution, (mean, uneven) in zip(("before", "after"), self._solutions, self._means, strict=True):
             columns[name] = {
-                "mean torque [N m]": _torque_means(solution)[0],
+                "mean torque [N m]": mean,
                 "mean |T - mean| [N m]": uneven,
                 "largest |T| [N m]": abs(extrema(solution, "balancing_torque").largest),
                 "largest reaction at O [N]": extrema(solution, "O").largest,
@@ -158,12 +165,10 @@ class TorqueBalancing:
 
     def report(self):
         """Report as text, with a warning if the cam cuts into the shaft."""
-        nearest, roller, shaft = self.cam_radius, self.follower.rollers[self.follower.pin], self.shaft_radius
-        hint = None if shaft is None else shaft_hint(nearest.value, self.roller_radius or roller, shaft)
-        low, high = self.stretch
-        before, after = self.uneven
+        nearest, roller = self.cam_radius, self.roller_radius or self.follower.rollers[self.follower.pin]
+        hint = self.shaft_radius is not None and shaft_hint(nearest.value, roller, self.shaft_radius)
+        (low, high), (before, after), forces = self.stretch, self.uneven, self._contact_forces
         mean = self.mean_torque if abs(self.mean_torque) > MEAN_TOLERANCE * before else 0.0
-        forces = self.least_contact_force, self.largest_contact_force
         lost = ", ".join(f"{np.degrees(a):.4g} to {np.degrees(b):.4g} deg" for a, b in self.lifts_off)
         return "\n".join(
             [
@@ -285,9 +290,9 @@ def torque_balancing_cam(
     >>> found.remaining < 1e-9, found.lifts_off
     (True, ())
     """
-    given = {"stiffness": stiffness, "base_radius": base_radius, "roller_radius": roller_radius, "mass": mass}
-    given |= {"shaft_radius": shaft_radius, "travel": travel, "pressure_angle": pressure_angle}
-    values = _parse_values(scene, given | {"guide_angle": guide_angle, "guide_offset": guide_offset})
+    given = {"mass": mass, "travel": travel, "pressure_angle": pressure_angle, "guide_angle": guide_angle}
+    given |= {"guide_offset": guide_offset, "stiffness": stiffness, "base_radius": base_radius}
+    values = _parse_values(scene, **given, roller_radius=roller_radius, shaft_radius=shaft_radius)
     if np.size(switches):
         switches = np.atleast_1d(checks.check_values(OWNER, SWITCH_RULES, {"switches": switches})["switches"])
     torque, energy = _energy(scene, switches)
@@ -303,9 +308,7 @@ def torque_balancing_cam(
             f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
         )
     level = peak + 0.5 * stiffness * least * least
-    reserves = {low: spring_follower.reserve(energy, low, level, moving, stiffness) for low in lows}
-    low = min(reserves, key=reserves.__getitem__)
-    reserve = reserves[low]
+    reserve, low = min((spring_follower.reserve(energy, low, level, moving, stiffness), low) for low in lows)
     if reserve <= 1.0:  # (k x)^2 must exceed 4 m omega^2 E'' at minima of E
         raise ParameterError(
             f"{OWNER}: the follower would lift off at {np.degrees(low) % 360:.6g} deg, where the spring pulls with "
@@ -319,17 +322,17 @@ def torque_balancing_cam(
     name = f"{scene.mechanism.name} with torque-balancing cam"
     mechanism = with_roller_follower(scene.mechanism, name, law, guide, link, pin, label)
     follower = mechanism.groups[-1]
-    if roller_radius is not None:
+    if "roller_radius" in values:
         follower.disk.profile(values["roller_radius"], 360)
     weight = sum(float(dot(guide.direction, item.vector)) for item in scene.loads if isinstance(item, Gravity))
     spring = Spring(stiffness, shift - values["mass"] * weight / stiffness, on="follower" + label)
     loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
+    radii = {name: values.get(name) for name in ("shaft_radius", "roller_radius")}
     ends = least, least + travel
-    radii = values.get("shaft_radius"), values.get("roller_radius")
-    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, *radii)
+    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, **radii)
 
 
-def _parse_values(scene, given):
+def _parse_values(scene, **given):
     """Checked values by name; an error for a scene that this cam cannot balance."""
     problem = None
     if not isinstance(scene, Scene):
@@ -343,8 +346,8 @@ def _parse_values(scene, given):
         problem = f"motion and loads must repeat after a turn like the cam, but repeat after {turns:.6g}"
     elif "O" in scene.friction.acting:
         problem = "friction at O grows with the force of the cam; leave it out, and add it to the resulting scene"
-    given = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
-    return checks.single_numbers(OWNER, problem, **{name: (value, *RULES[name]) for name, value in given.items()})
+    known = {name: value for name, value in given.items() if value is not None or name not in OPTIONAL}
+    return checks.single_numbers(OWNER, problem, **{name: (value, *RULES[name]) for name, value in known.items()})
 
 
 def _energy(scene, switches):
@@ -384,7 +387,7 @@ def _base_radius(stretch, least, values):
     x, rate = stretch.at(turn_angles(stretch.edges, ANGLE_COUNT), 1)
     steep = np.tan(values["pressure_angle"])
     needed = float(np.max(np.abs(rate + values["guide_offset"]) / steep - (x - least)))
-    clear = values.get("shaft_radius", 0.0) + (values.get("roller_radius", 0.0) if "shaft_radius" in values else 0.0)
+    clear = values["shaft_radius"] + values.get("roller_radius", 0.0) if "shaft_radius" in values else 0.0
     off_shaft = float(np.sqrt(max(clear * clear - values["guide_offset"] ** 2, 0.0)))
     base = values.get("base_radius", max(needed, off_shaft))
     if base < needed * (1.0 - 1e-9):

@@ -13,6 +13,7 @@ crank with an offset guide do; `weight_options` compares them.
 
 import warnings
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,8 @@ from ..errors import DesignError, HintWarning
 from ..machine.loads import Gravity
 from ..mechanics.quantities import of_scene
 from ..numbers import checks
-from .cam_start import Options, crank_slider_links, starting_machine
+from ..numbers.planar import cross
+from .cam_start import OPTION_RULES, Options, crank_slider_links, starting_machine
 from .constraints import parse_output
 from .optimisation import best_design, parse_task, search_problems
 from .problem import Problem, choose_design, scene_of, true_value
@@ -40,20 +42,18 @@ def least_squares(problem, start, values):
 
     Only numbers of the cam, the coupler and the linear spring change.
     """
-    columns = [place for place, name in enumerate(problem.names) if name in start.first]
     for weight, smooth in LEAST_SQUARES_PASSES:
-        values = _least_squares_pass(problem, start, values, columns, weight, smooth)
+        values = _least_squares_pass(problem, start, values, weight, smooth)
     return np.clip(values, problem.low, problem.high)
 
 
-def _least_squares_pass(problem, start, values, columns, weight, smooth):
-    """Least squares over some numbers, with weights of the stroke's ends and of the cam's waves."""
+def _least_squares_pass(problem, start, values, weight, smooth):
+    """Least squares with weights of the stroke's ends and of the cam's waves."""
     from scipy import optimize
 
+    columns = [place for place, name in enumerate(problem.names) if name in start.first]
     waves = smooth * np.array([waviness(problem.names[place]) for place in columns]) / start.half
-    ends = np.array(start.ends)
-    reach = (problem.high - problem.low)[columns]
-    count = problem.angles
+    reach, unit = (problem.high - problem.low)[columns], start.unit * np.sqrt(problem.angles)
 
     def placed(steps):
         found = values.copy()
@@ -63,27 +63,19 @@ def _least_squares_pass(problem, start, values, columns, weight, smooth):
     def residuals(steps):
         curves = problem.curves(placed(steps))
         (torque, *_), (place, *_) = curves[TORQUE], curves[POSITION]
-        missed = (np.array([place.min(), place.max()]) - ends) / start.half
-        found = [torque / (start.unit * np.sqrt(count)), weight * missed, waves * placed(steps)[columns]]
+        missed = (np.array([place.min(), place.max()]) - start.ends) / start.half
+        found = [torque / unit, weight * missed, waves * placed(steps)[columns]]
         return np.nan_to_num(np.concatenate(found), nan=1e3)
 
     def slopes(steps):
         curves = problem.curves(placed(steps))
         place, rises, _ = curves[POSITION]
         extreme = rises[:, [place.argmin(), place.argmax()]]
-        rows = np.hstack([curves[TORQUE].slopes / (start.unit * np.sqrt(count)), weight * extreme / start.half])
+        rows = np.hstack([curves[TORQUE].slopes / unit, weight * extreme / start.half])
         return np.nan_to_num(np.vstack([rows[columns].T, np.diag(waves)]) * reach)
 
-    found = optimize.least_squares(
-        residuals,
-        np.zeros(len(columns)),
-        slopes,
-        method="lm",
-        x_scale=1.0,
-        xtol=1e-12,
-        ftol=1e-12,
-        max_nfev=MAX_LEAST_SQUARES_STEPS,
-    )
+    ends: Any = {"xtol": 1e-12, "ftol": 1e-12, "max_nfev": MAX_LEAST_SQUARES_STEPS}
+    found = optimize.least_squares(residuals, np.zeros(len(columns)), slopes, method="lm", x_scale=1.0, **ends)
     return placed(found.x)
 
 
@@ -236,12 +228,7 @@ def ratio_bound(start, scene, reference):
     if reference is None or not start.weight:
         return np.inf
     guide = scene.mechanism.guides[scene.mechanism.slider]
-
-    def across(solution):
-        x, y = solution.position("A")
-        return np.cos(guide.guide_angle) * y - np.sin(guide.guide_angle) * x
-
-    height = abs(extrema(scene.solve(1), across).largest)
+    height = abs(extrema(scene.solve(1), lambda at: cross(guide.direction, at.position("A"))).largest)
     plain = true_value(parse_output(f"mean_absolute {TORQUE}", reference), reference)
     return float(plain * 2 * np.pi / (4 * abs(start.weight) * height))
 
@@ -280,20 +267,15 @@ def _require_within_bound(start, problem, limits, reference, values):
         return
     greatest = ratio_bound(start, problem.scene(values), reference)
     for limit in limits:
-        output = limit.output
-        mean = (
-            isinstance(output, Output)
-            and output.ratio
-            and (output.reduction, output.quantity) == ("mean_absolute", TORQUE)
-        )
-        if mean and limit.relation != "<=" and limit.value > BOUND_MARGIN * greatest:
+        of_mean = str(limit.output) == f"ratio mean_absolute {TORQUE}"
+        if of_mean and limit.relation != "<=" and limit.value > BOUND_MARGIN * greatest:
             raise DesignError(f"torque-free cam: {limit} cannot be kept{advice}", problem.numbers(values))
 
 
 def _advice(start, problem, reference, values):
     """Sentence on other ways to balance weight if a symmetric cam cannot."""
-    helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
     limit = ratio_bound(start, problem.scene(values), reference)
+    helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
     if helped or not np.isfinite(limit):
         return ""
     return (
@@ -344,26 +326,22 @@ def weight_options(source, cosine=8, *, variant=None, reference=None, counterwei
     """
     import pandas as pd
 
-    taken = [name for name in ("sine", "coupler_spring") if name in options]
-    mass = checks.Optional(checks.Number("kg", low=0.0, strict=True))
-    wrong = (f"{name} is one of the ways compared, so it cannot be given" for name in taken)
-    counterweight = checks.check_values(
-        "weight_options", {"counterweight": mass}, {"counterweight": counterweight}, *wrong
-    )["counterweight"]
+    wrong = [
+        f"{name} is one of the ways compared, so it cannot be given"
+        for name in ("sine", "coupler_spring")
+        if name in options
+    ]
+    asked = {} if counterweight is None else {"counterweight": (counterweight, *OPTION_RULES["counterweight"])}
+    mass = checks.single_numbers("weight_options", *wrong, **asked).get("counterweight")
     given, compared = choose_design(source, variant, reference)
     scene = scene_of(given)
     group, _ = crank_slider_links(scene)
-    pulls = [
-        item.acceleration * np.sin(item.direction - group.guide.guide_angle)
-        for item in scene.loads
-        if isinstance(item, Gravity)
-    ]
-    mass = group.coupler.mass if counterweight is None else counterweight
+    across = sum(float(cross(group.guide.direction, load.vector)) for load in scene.loads if isinstance(load, Gravity))
     ways = {
         "symmetric": {},
         "sine terms": {"sine": cosine},
-        "coupler spring": {"coupler_spring": float(np.copysign(QUARTER_TURN, sum(pulls)))},
-        "counterweight": {"counterweight": mass, "sine": cosine},
+        "coupler spring": {"coupler_spring": float(np.copysign(QUARTER_TURN, across))},
+        "counterweight": {"counterweight": group.coupler.mass if mass is None else mass, "sine": cosine},
     }
     rows = {}
     for name, way in ways.items():
