@@ -330,13 +330,15 @@ def _fourier(problem, quantity, points):
     matrix *= 2.0 * np.pi / problem.period
 
     def run():
-        energy = np.full(points, problem.guess)
+        energy, last = np.full(points, problem.guess), np.inf
         for _ in range(40):
             slope, by_energy = problem.slopes(angle, energy)
             change = np.linalg.solve(matrix - np.diag(by_energy), slope - matrix @ energy)
             energy = energy + change
-            if np.abs(change).max() < 1e-14 * energy.max():
+            size = np.abs(change).max() / energy.max()
+            if size < 1e-14 or last <= size < 1e-9:  # of many points the rounding alone changes more than 1e-14
                 break
+            last = size
         half = np.pi * (problem.angles[:, None] - angle) / problem.period
         with np.errstate(divide="ignore", invalid="ignore"):
             weight = np.where(np.abs(np.sin(half)) < 1e-12, 1.0, np.sin(points * half) / (points * np.sin(half)))
