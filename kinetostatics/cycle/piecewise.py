@@ -18,7 +18,7 @@ from ..numbers.lazy import cached_property
 POINTS = 24
 """Points of a piece."""
 POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
-"""Number of points where there are more edges than a limit, and that limit."""
+"""Limits of the number of edges, and the number of points of a piece above each."""
 TAIL_TERMS = 3
 """Number of last coefficients of a series that estimate its error."""
 TAIL = 2e-14
@@ -26,7 +26,7 @@ TAIL = 2e-14
 MAX_HALVINGS = 60
 MAX_PIECES = 20_000
 MAX_UNRESOLVED = 100
-"""Largest number of additional unresolved pieces of a turn; with more a function is rough and its pieces are kept."""
+"""Largest number of unresolved pieces of a turn besides the first ones; of a function with more, none is halved."""
 DENSE = 8
 """Number of places per point of a series in the search for extremes."""
 MIN_WIDTH = 1e-13
@@ -42,9 +42,9 @@ CHOPPED = 2e-3
 class Rule(NamedTuple):
     """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
-    `vander` and `many` go from series to values at the points and the dense places, `derived` to the series of slopes,
-    `risen` to that of integrals from -1. `check` goes from values at the points to the last coefficients, and
-    to values and slopes at both ends.
+    `vander` goes from a series to values at the points, `many` to values at the dense places, `derived` to the series
+    of slopes, and `risen` to the series of integrals from -1. `check` goes from values at the points to the last
+    coefficients, and to values and slopes at both ends.
     """
 
     points: np.ndarray
@@ -188,7 +188,7 @@ class Pieces:
         return product(values, rule(self.count).series).T
 
     def smoothed(self, values):
-        """Values of the lower half of each series; the upper half of difference quotients is noise."""
+        """Values without the upper half of the coefficients, which is noise of values that are difference quotients."""
         count = self.count // 2
         return (rule(self.count).vander[:, :count] @ self.series(values)[:count]).T
 
@@ -272,7 +272,7 @@ class Pieces:
         return np.column_stack([self.low + JUMP_OFFSET, self.angle, self.high - JUMP_OFFSET])
 
     def resolved(self, values, evaluate, rough):
-        """Pieces, halved until the series of functions are accurate; values on them, and a mask of rough pieces.
+        """Halve pieces until series of functions are accurate; return them, their values, and a mask of rough pieces.
 
         Parameters
         ----------
@@ -315,7 +315,8 @@ class Pieces:
         -------
         angle, piece : array (K,)
         starts : array (pieces,) of bool
-            Also True where it is level before or after; the last piece precedes the first.
+            Whether it turns at the start of a piece, or is constant in this piece or the one before. The last piece
+            is before the first.
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
         large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
@@ -394,7 +395,7 @@ def highest(height, group):
 
 
 def waves(count, place):
-    """Chebyshev polynomials (count, K) at places from -1 to 1, outside only by rounding."""
+    """Values (count, K) of the Chebyshev polynomials at places in [-1, 1]; those outside by rounding are clipped."""
     return np.cos(np.arange(count)[:, None] * np.arccos(np.clip(place, -1.0, 1.0)))
 
 
@@ -420,7 +421,7 @@ def _slope_of_size(value, first, second):
 
 
 def edges_between(breaks, width):
-    """Edges at breaks, and even edges between breaks farther apart than `width`."""
+    """Breaks, with equally spaced edges between them where they are farther apart than `width`."""
     gaps = np.diff(breaks)
     parts = np.maximum(np.ceil(gaps / width - 1e-9), 1.0).astype(int)
     place = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)

@@ -1,8 +1,8 @@
 """Recording: the kernels run once on numbers that record every operation.
 
 Groups, loads, names, absent parts and the assembly mode of a scene form its structure; the recorded arithmetic is valid
-for all scenes of that structure, with any numbers. Outputs become NaN where a group they depend on is open. That holds
-even if no arithmetic links them, as for the weight of the crank, zero moments, or energies of massless groups.
+for all scenes of that structure, with any numbers. An output becomes NaN where a group it depends on is open, even if
+no recorded operation links the two, as for the weight of the crank, zero moments, or energies of massless groups.
 """
 
 from collections.abc import Callable
@@ -37,7 +37,7 @@ ROOTS = ("root", "sqrt")
 class Gaps:
     """Makes outputs NaN where a group they depend on is open.
 
-    The roots below a node are bits of an integer, one per root of the graph.
+    An integer for each node marks the square roots that enter it, with one bit for each root of the graph.
     """
 
     def __init__(self, graph, scene):
@@ -52,7 +52,7 @@ class Gaps:
             self._bits.append(bits)
 
     def added(self, output, name):
-        """An output plus 0 times each root that it lacks; roots below another root are left out."""
+        """The output plus 0 times each root of its groups that does not enter it yet: NaN where the root is NaN."""
         parts = (np.ravel(part)[0] for part in coordinates(self._placement, self._behind[name]))
         missing = self._of(parts) & ~self._of([output])
         for place, root in reversed([*enumerate(self._roots)]):
@@ -77,9 +77,9 @@ WITHOUT_GAPS = ("closure", *FRICTION_CHECKS)
 class Table(NamedTuple):
     """Rows of values that ``compute(motion, leaves)`` gives at the crank angles before the program runs.
 
-    `rows` are their numbers, `names` the name, the order of derivative by the crank angle and the unit of each.
-    `moved_by` is the user code whose dependence on parameters is not recorded; "" if there is none. `of` is the cam, or
-    the number of the load, that uses them.
+    `rows` are the row indices, `names` the name, the order of derivative by the crank angle and the unit of each.
+    `moved_by` names user code whose derivatives by the parameters are unknown; "" if there is none. `of` is the cam,
+    or the index of the load, that uses them.
     """
 
     rows: range
@@ -247,7 +247,8 @@ class Recorder:
     def _stroke(self, load, place, idle):
         """Coordinates of the dead centres of a load's slider, at their crank angles from a table.
 
-        To first order only these angles matter, because the coordinate has an extremum there; so derivatives are exact.
+        The angles count as constants: the coordinate has an extremum there, so an error of the angle does not change
+        it to first order, and derivatives are exact.
         For a cam from a table the coordinates come from a table themselves.
         """
         mechanism, is_tabled = idle.mechanism, _has_tabled_cam(idle.mechanism)
@@ -285,7 +286,7 @@ class Recorder:
         return values
 
     def _read(self, table, unit, place, idle):
-        """Values of a table; unless it is over the crank angle, a function of the motion by pieces found beforehand."""
+        """Values of a table over the crank angle; of another, a function of the motion by a piece found beforehand."""
 
         def item(motion):
             return motion.loads[place].value_now
@@ -348,7 +349,7 @@ class _Tabled:
 # Errors of inputs that are not exact
 
 ERRORS = tuple(("error", order, "") for order in range(4))
-"""Names of rows that only bounds need."""
+"""Names of the table rows with terms of errors, which only the bounds use."""
 
 
 def _nodes(*nodes):

@@ -17,7 +17,7 @@ SIZE = checks.Number("m", low=0.0, strict=True)
 ROLLING_ARM = checks.Number("m", low=0.0, usual=checks.PlausibleRange(0.02, "is it in mm?", 1e-3))
 PIN_RADIUS = replace(SIZE, usual=checks.PlausibleRange(1.0, "is it in mm?", 1e-3, in_links=True))
 PASSES_BY_SOLVER = (3, 6, 12)
-"""Numbers of passes over the directions of all reactions, tried in turn; each pass doubles the digits."""
+"""Numbers of iterations of friction, tried in this order; each iteration doubles the number of correct digits."""
 
 
 @dataclass(frozen=True, eq=False)

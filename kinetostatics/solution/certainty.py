@@ -39,7 +39,7 @@ MAX_SECOND_ORDER_SHARE = 0.1
 MEDIAN_SHARE = 0.01
 """Smallest reference value of the first order, relative to its median over the crank angles."""
 MAX_PAIRWISE_INPUTS = 3
-"""Largest number of inputs for which each product of two is computed directly, without sums of products first."""
+"""Largest number of inputs whose pairs are all tried at once; with more, sums over all pairs are tried first."""
 
 
 class LargeSecondOrder(NamedTuple):
@@ -107,9 +107,10 @@ def _codes(count):
 def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None:
     """Places where the second order, by differences, is not small; None if it is small everywhere.
 
-    ``change(signs)`` gives the change of the values, (components, ..., N), with inputs by path larger, 1, or smaller,
-    -1, by their uncertainty. For many inputs, sums of all products of two are computed before each product. Their signs
-    prevent that two products cancel in every sum. The other arguments are those of `large_second_order`.
+    ``change(signs)`` gives the change of the values, (components, ..., N); `signs` maps paths to 1 or -1, where the
+    input is larger or smaller by its uncertainty. For many inputs, sums over all pairs are tried first, with several
+    choices of signs, so that two pairs cannot cancel in all sums. The other arguments are those of
+    `large_second_order`.
     """
     paths = tuple(first)
     with np.errstate(all="ignore"):
@@ -134,12 +135,12 @@ def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | Non
     """Places where the second order is not small relative to the first order and rounding; None if there are none.
 
     `first` has arrays (components, ..., N) by path. `second` has 1/2 f_ii u_i^2 by (path,) and f_ij u_i u_j by (path,
-    other); `rounding` is a bound on the rounding of values.
+    other), or sums over all pairs by other keys of two; `rounding` is a bound on the rounding of values.
     """
     terms = np.array(list(second.values()))
     squares = np.array([len(paths) == 1 for paths in second])
     own, parts = _root_sum_square(np.array(list(first.values())), (0, 1)), _root_sum_square(terms, 1)
-    parts[squares] *= np.sqrt(2.0)  # of its mean, squared, the variance of a square is twice that
+    parts[squares] *= np.sqrt(2.0)  # the variance of a squared normal deviation is twice its squared mean
     more = _root_sum_square(np.array([*parts, _root_sum_square(terms[squares].sum(axis=0))]))
     scale = np.fmax(own, MEDIAN_SHARE * np.nanmedian(own)) if np.isfinite(own).any() else own
     gap = np.isnan(more)
@@ -234,7 +235,7 @@ class Certainty(Parameters):
 
         Exact arithmetic gives values within this bound of the solution. Numbers given to constructors, as floats, and
         crank angles count as exact. Numbers derived from them, such as directions of guides and of gravity, have
-        bounds. A guide through two points counts as rounded once.
+        bounds. The direction of a guide through two points counts as rounded once.
 
         Parameters
         ----------

@@ -169,6 +169,7 @@ def _is_zero(value):
 
 
 def _without_load(kind, solution):
+    """The solution without its springs, weight or other loads of a kind."""
     kept = tuple(item for item in solution.loads if not isinstance(item, kind))
     return replace(solution, loads=kept) if len(kept) < len(solution.loads) else None
 

@@ -78,7 +78,7 @@ PRESSED = 1e-9
 """Contact force, relative to the largest, above which a side of a cam carries force."""
 SURFACE_POINTS = 360
 UNCLIPPED_SHARE = 0.9
-"""Fraction of the poses with a full-length arrow of an unbounded reaction."""
+"""Fraction of the poses in which the arrow of an unbounded reaction has its full length; it is cut in the rest."""
 HALF_SECTOR = np.radians(50.0)
 """Half of the angle of a counterweight."""
 
@@ -259,7 +259,7 @@ class Shape:
                 yield from self._sign(sign)
 
     def _signs(self, item, pose):
-        """Signs of a load in the poses of a motion, over the turn computed once; a user's own load may have none."""
+        """Symbols of a load in the poses of a motion; those over the turn are kept. A user's own load may have none."""
         if not hasattr(item, "signs"):
             return ()
         if pose is not self.turn:
@@ -431,7 +431,7 @@ def at_angles(solution, degrees):
 
 
 def moves_alike(solution, other):
-    """Whether two machines look the same in every pose, except for counterweights and loads."""
+    """Whether two machines look the same in 25 poses of the period, except for counterweights and loads."""
     made, twin = solution.mechanism, other.mechanism
     if (list(made.joints), list(made.links)) != (list(twin.joints), list(twin.links)):
         return False

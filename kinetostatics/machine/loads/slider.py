@@ -195,7 +195,7 @@ class Spring(SliderLoad):
         return np.mean(rate, axis=-1, keepdims=np.ndim(rate) > 1) if weights is None else rate @ weights
 
     def parted_rate(self, motion):
-        """Stiffness as a part that is constant over the crank angle, if the group has one, and a rest or None."""
+        """Secant stiffness as a part that does not depend on the crank angle, and a rest; None for an absent one."""
         if present(self.cubic) is None:
             return self.stiffness, None
         found = motion.outward(self)

@@ -60,7 +60,7 @@ for _word, _others in SYNONYMS.items():
     for _other in _others:
         _WORDS_BY_SYNONYM.setdefault(_other, []).append(_word)
 MIN_SIMILARITY_OF_ALL = 0.9
-"""Similarity from which a text of several words is that of an allowed word rather than its last word alone."""
+"""Least similarity at which a whole text, rather than its last word, is matched with an allowed word."""
 _UNIT = re.compile(r"\s*(?:\([^()]*\)|\[[^\[\]]*\])\s*$")
 """A unit after a name, as in headings."""
 _PART = re.compile(r"([^\s.]*?)(\d*)(?=[\s.]|$)")

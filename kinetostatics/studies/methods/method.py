@@ -96,10 +96,10 @@ def require_one_design(solution):
 
 
 def run_methods(methods, problem, quantity, measure, progress=None, **unknown):
-    """Rows of a table, one for each method and setting, and functions to time by row.
+    """Rows of a table, one for each method and setting, and by row number the functions to be timed.
 
-    ``measure(method, run)`` returns further columns, including the error; if a method does not give the quantity, they
-    are those of `unknown`, and the error is NaN. ``progress(name)`` is called before each method.
+    ``measure(method, run)`` returns further columns, one of them the error. If a method does not give the quantity, the
+    columns come from `unknown` and the error is NaN. ``progress(name)`` is called before each method.
     """
     rows: list[dict] = []
     runs = {}

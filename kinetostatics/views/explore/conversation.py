@@ -11,7 +11,7 @@ PAUSE = 0.05
 
 
 class Conversation:
-    """Answers each request of a page; numbers of an older state are dropped when a newer one is asked for.
+    """Answers each request of a page; numbers of an older state are not sent once a newer one is asked for.
 
     `send` is called with the header and the buffers of each answer, as `packed` gives them.
     """
