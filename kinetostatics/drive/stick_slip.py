@@ -30,10 +30,6 @@ MAX_STEPS_AT_REST = 40
 """Fixed-point steps of the energy near a standstill."""
 ROUNDING = 1e-15
 """Relative rounding of crank angles and torques: noise of the net torque on steep ramps and near an equilibrium."""
-MAX_NEAR_CHANGE = 0.1
-"""Relative change of the torque in a step near a standstill after which friction is linear in the acceleration."""
-MANY_TAILS = 1e3
-"""Ratio of the last coefficients of a torque to the largest allowed ones, above which it is not followed further."""
 MAX_REACH_GROWTH = 8.0
 """Ratio of successive crank angles in attempts."""
 MAX_EDGES = 200
@@ -171,7 +167,7 @@ class March:
 
     def __init__(self, driven, angle, speed, end=math.inf, target=None):
         self.driven, self.end, self.target = driven, end, target
-        self.left, self.stop = math.inf, math.nan
+        self.left = math.inf
         self.shift = math.floor(angle / driven.period) * driven.period
         self.inside, self.time, self.speed = angle - self.shift, 0.0, abs(speed)
         self.energy = 0.5 * float(driven.inertia(np.array([self.inside]))[0]) * speed * speed
@@ -259,21 +255,15 @@ class March:
         room = abs(ahead[0] - self.inside)
         reach = min(reach, self._within_time(machine), abs(ahead[-1] - self.inside) if self.energy else room)
         reach = min(reach, self.left)
-        if self.energy:
-            length, most = self._to_standstill(machine, room)
-            if length < min(room, most * reach):
-                found = self._attempt(come_to_rest, machine, self.inside, self.energy, length, room, known.count)
-                if found is not None:
-                    return (found[0], self.inside + direction * found[1], 0.0), reach
-                self.stop = math.nan
-                if isinstance(self.problem, StandstillError):  # the stretch is too long for one piece
-                    self.stop = self.problem.angle
-                    reach = min(reach, 0.5 * abs(self.stop - self.inside))
         near = np.abs(ahead - self.inside - direction * reach)
         far = float(ahead[near.argmin()] if near.min() < ANGLE_TOLERANCE else self.inside + direction * reach)
         if self.energy == 0.0:
             found = self._attempt(leave_rest, machine, self.inside, abs(far - self.inside), known.count)
             return found and (found[0], far, found[1]), reach
+        if self._stops_within(machine, 0.5 * min(room, reach)):
+            found = self._attempt(come_to_rest, machine, self.inside, self.energy, room, known.count)
+            if found is not None:
+                return (found[0], self.inside + direction * found[1], 0.0), reach
         inner = ahead[direction * (far - ahead) > 0.0]
         part = Pieces(np.sort(np.concatenate([[self.inside], inner, [far]])), known.count)
         whole = begins and part.edges.size == edges.size and far == ahead[-1]
@@ -286,27 +276,21 @@ class March:
             if whole:
                 known.keep(*solved, abs(energy - self.energy) / periods)
             return (stretch, far, energy), reach
-        stops, falls = reach, isinstance(self.problem, StandstillError)
-        if falls:
-            self.stop = self.problem.angle
-            stops = max(abs(self.stop - self.inside), reach / MAX_REACH_GROWTH)
+        stops = reach
+        if isinstance(self.problem, StandstillError):
+            stops = max(abs(self.problem.angle - self.inside), reach / MAX_REACH_GROWTH)
         before = np.abs(inner - self.inside)
         before = before[before < stops]
         if before.size:  # the next attempt ends at the last edge before the standstill, or at half the angle
-            return None, 2.0 * before[-1] if falls else reach
-        room += ANGLE_TOLERANCE
-        found = self._attempt(come_to_rest, machine, self.inside, self.energy, min(stops, room), room, known.count)
+            return None, 2.0 * before[-1] if isinstance(self.problem, StandstillError) else reach
+        found = self._attempt(come_to_rest, machine, self.inside, self.energy, room + ANGLE_TOLERANCE, known.count)
         return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
 
-    def _to_standstill(self, machine, room):
-        """Approximate crank angle to a standstill, and the share of the reach within which it is tried."""
-        known = machine.direction * (self.stop - self.inside)
-        if 0.0 < known <= room:
-            return known, math.inf
-        place, speed = np.array([self.inside + machine.direction * ANGLE_AHEAD]), machine.direction * self.speed
-        net = self._attempt(lambda: machine.motor_torque(speed) - machine.at_acceleration(place, speed, 0.0).torque[0])
-        slowing = 0.0 if net is None else -machine.direction * float(net)
-        return (self.energy / slowing, 0.5) if slowing > 0.0 else (math.inf, 0.5)
+    def _stops_within(self, machine, reach):
+        """Whether the torque just ahead absorbs the energy within a crank angle."""
+        place = self.inside + machine.direction * ANGLE_AHEAD
+        net = self._attempt(machine.torque_at, place, machine.direction * self.speed)
+        return net is not None and -machine.direction * net * reach > self.energy
 
     def _attempt(self, function, *parts):
         """Result of a function, or None if it fails; `problem` is its error."""
@@ -408,12 +392,12 @@ def leave_rest(driven, angle, length, count):
     return found and (found[0], found[1] * found[2])
 
 
-def come_to_rest(driven, angle, energy, length, room, count):
-    """Stretch from a crank angle and energy to a standstill within `room`, and the angle to it; or None.
-
-    `length` is the approximate angle. `StandstillError` if the stretch is too long for one piece.
-    """
-    found = _beside_rest(driven, angle, length, energy, count)
+def come_to_rest(driven, angle, energy, room, count):
+    """Stretch from a crank angle and energy to a standstill within `room`, and the angle to it; or None."""
+    speed = driven.direction * math.sqrt(2.0 * energy / driven.inertia(np.array([angle]))[0])
+    net = driven.torque_at(angle + driven.direction * ANGLE_AHEAD, speed)  # loads may jump here
+    length = -energy / (driven.direction * net) if driven.direction * net < 0.0 else room
+    found = _beside_rest(driven, angle, min(length, room), energy, count)
     return found and (found[0], found[1]) if found and found[1] <= room else None
 
 
@@ -427,11 +411,6 @@ def _means(count):
     return share, means[:-1], means[-1]
 
 
-def _tail(values):
-    """Tail of the series of values at the points of one piece."""
-    return Pieces(np.array([-1.0, 1.0]), values.size).tail(values[None])[0]
-
-
 def _beside_rest(driven, angle, length, energy, count):
     """Stretch next to a standstill, its length, rad, and the mean torque over it; or None.
 
@@ -440,7 +419,7 @@ def _beside_rest(driven, angle, length, energy, count):
     """
     share, means, whole = _means(count)
     direction, root = driven.direction, 1.0 if energy is None else -1.0
-    mean, before, noise, near = None, math.inf, 0.0, None
+    mean, before, noise = None, math.inf, 0.0
     for _ in range(MAX_STEPS_AT_REST):
         place = share * share if energy is None else (1.0 - share) * (1.0 + share)
         places = angle + direction * length * place
@@ -449,7 +428,7 @@ def _beside_rest(driven, angle, length, energy, count):
             mean = direction * driven.torque_at_rest(angle)[0] if energy is None else energy / length
             mean = np.full(count, mean)
         pace = np.sqrt(2.0 * length * mean / inertia)
-        state = driven.at(places, direction * share * pace, near)
+        state = driven.at(places, direction * share * pace)
         motor = driven.motor_torque(direction * share * pace)
         torque = root * direction * (motor - state.torque)
         last, mean, total = mean, means @ torque, float(whole @ torque)
@@ -463,19 +442,12 @@ def _beside_rest(driven, angle, length, energy, count):
             length, size = length * (1.0 + max(step, -0.5)), max(size, abs(step))
         if size < 1e-15 or (size < 1e-12 + noise and size >= 0.5 * before):
             break
-        if size < MAX_NEAR_CHANGE:
-            near = driven.motion_with_friction
-            if _tail(torque) > MANY_TAILS * (10.0 * TAIL + noise):
-                break
         before = size
     else:
         return None
     slowness = np.sqrt(2.0 * length * inertia / mean)
-    if max(map(_tail, (torque, pace, slowness))) > 10.0 * TAIL + noise:
-        if energy is not None:
-            raise StandstillError(angle + direction * length)
-        return None
-    if not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
+    tails = [Pieces(np.array([-1.0, 1.0]), count).tail(row[None]).max() for row in (torque, pace, slowness)]
+    if max(tails) > 10.0 * TAIL + noise or not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
         return None
     friction = state.torque - driven.without_friction(places, direction * share * pace).torque
     way, reach = int(root), direction * length
