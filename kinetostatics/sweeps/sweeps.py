@@ -11,7 +11,7 @@ import sys
 import warnings
 from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import closing
+from contextlib import closing, suppress
 from functools import partial
 
 import numpy as np
@@ -66,9 +66,8 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
     if engine == "compiled":
         numba_backend.require_numba()
     is_large = len(designs) * max(angles, MIN_ANGLES_PER_TURN) >= MIN_VALUES_COMPILED
-    engines = [engine or "numpy"]
-    if engine is None and is_large and numba_backend.numba_available():
-        engines = ["compiled", "numpy"]
+    compiled_first = engine is None and is_large and numba_backend.numba_available()
+    engines = ["compiled", "numpy"] if compiled_first else [engine or "numpy"]
     threads = numba_backend.core_count() if executor is None and workers is None else 1
     together = tuple(item for item in wanted if isinstance(item, Output))
     alone = tuple(item for item in wanted if isinstance(item, SolutionNumber))
@@ -82,9 +81,8 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
 def _source_and_reference(source, designs, variant, reference):
     """Source that designs vary, and reference of ratios; an error for arguments of the wrong kind."""
     if not isinstance(designs, pd.DataFrame):
-        raise ParameterError(
-            f"sweep: designs must be a pandas DataFrame, as from ks.designs, got {type(designs).__name__}"
-        )
+        found = type(designs).__name__
+        raise ParameterError(f"sweep: designs must be a pandas DataFrame, as from ks.designs, got {found}")
     if is_case(source):
         return variant_and_reference(source, variant, reference)
     if not (can_vary(source) or callable(source)):
@@ -172,12 +170,11 @@ def _column_problems(designs, wanted):
 
 
 def _signature_problem(function, names):
-    try:
-        inspect.signature(function).bind(**dict.fromkeys(names))
-    except TypeError as error:
-        return f"the function does not accept the columns of the designs: {error}"
-    except ValueError:  # a function without a signature
-        return None
+    with suppress(ValueError):  # a function without a signature
+        try:
+            inspect.signature(function).bind(**dict.fromkeys(names))
+        except TypeError as error:
+            return f"the function does not accept the columns of the designs: {error}"
     return None
 
 
