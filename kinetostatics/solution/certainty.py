@@ -135,7 +135,7 @@ def large_second_order(angle, first, second, rounding) -> LargeSecondOrder | Non
     """Places where the second order is not small relative to the first order and rounding; None if there are none.
 
     `first` has arrays (components, ..., N) by path. `second` has 1/2 f_ii u_i^2 by (path,) and f_ij u_i u_j by (path,
-    other), or sums over all pairs by other keys of two; `rounding` is a bound on the rounding of values.
+    other). Other keys of two are those of sums over all pairs. `rounding` is a bound on the rounding of values.
     """
     terms = np.array(list(second.values()))
     squares = np.array([len(paths) == 1 for paths in second])
