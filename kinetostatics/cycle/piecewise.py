@@ -42,9 +42,9 @@ CHOPPED = 2e-3
 class Rule(NamedTuple):
     """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
 
-    From a series, `vander` goes to values at the points, and `many` to values at the dense places. `derived` goes to the
-    series of slopes, and `risen` to the series of integrals from -1. `check` goes from values at the points to the last
-    coefficients, and to values and slopes at both ends.
+    From a series, `vander` goes to values at the points, and `many` to values at the dense places. `derived` goes to
+    the series of slopes, and `risen` to the series of integrals from -1. `check` goes from values at the points to the
+    last coefficients, and to values and slopes at both ends.
     """
 
     points: np.ndarray
