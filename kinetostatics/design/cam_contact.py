@@ -91,8 +91,12 @@ class Roller:
         inward = -np.stack([r * x + slope * y, r * y - slope * x]) / np.hypot(r, slope)
         along = np.stack([-inward[1], inward[0]])
         force = inward * solution.cam_force + along * self.driving_force(solution)
-        weights = [np.reshape(load.vector, (2, 1)) for load in solution.loads if isinstance(load, Gravity)]
-        return np.hypot(*(force + self.mass * (sum(weights) - solution.acceleration("A"))))
+        if self.mass:
+            force = force - self.mass * solution.acceleration("A")
+            for load in solution.loads:
+                if isinstance(load, Gravity):
+                    force = force + self.mass * np.array(load.vector, dtype=float)[:, None]
+        return np.hypot(*force)
 
     def equivalent_load(self, solution):
         """Constant load of the same life, N.
@@ -137,9 +141,10 @@ class Roller:
 
     def reversal(self, solution, angle, step=1e-4):
         """The `Reversal` at a crank angle where the roller changes sides."""
-        before, after = solution.at(angle + np.array([-step, step])).cam_force.tolist()
-        rise = (after - before) / (2.0 * step)
-        spin = (-2.0 if rise > 0.0 else 2.0) * float(np.ravel(self.speed(solution.at([angle]))[0])[0]) / self.radius
+        at = solution.at(angle + np.array([-step, 0.0, step]))
+        rise = float(at.cam_force[2] - at.cam_force[0]) / (2.0 * step)
+        spin = 2.0 * float(np.broadcast_to(self.speed(at)[0], (3,))[1]) / self.radius
+        spin = -spin if rise > 0.0 else spin
         return Reversal(float(angle), spin, 0.5 * self.inertia * spin * spin, rise)
 
 
@@ -187,8 +192,21 @@ def pressure_from_hardness(brinell):
 def hardness_from_pressure(pressure):
     """Brinell hardness of steel that withstands a Hertz pressure in Pa, the inverse of `pressure_from_hardness`.
 
-    At least 180 HB, the lowest of the standard; extrapolated beyond 400 HB. Raises `ParameterError` for a negative
-    pressure.
+    At least 180 HB, the lowest of the standard; extrapolated beyond 400 HB.
+
+    Parameters
+    ----------
+    pressure : float
+        Pa.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ParameterError
+        The pressure is negative or no number.
 
     Examples
     --------
@@ -230,14 +248,14 @@ class CamContact:
 
     def __repr__(self):
         peak = self.largest_pressure
-        error = self.force_error
         lines = [
             f"<{type(self).__name__}: {self.solution.mechanism.name}, {self._body}",
             f"  side             {' and '.join(self.sides)}, {len(self.changes)} changes a period",
             f"  largest pressure {peak.value / 1e6:.6g} MPa at {np.degrees(peak.angle):.6g} deg",
             *(f"  exceeded         {text}" for text in self.exceeded),
-            *([] if error is None else [f"  uncertain        forces by {error:.2g} of the largest"]),
         ]
+        if self.force_error is not None:
+            lines.append(f"  uncertain        forces by {self.force_error:.2g} of the largest")
         return "\n  ".join(filter(None, ["\n".join(lines), resolution_note(self.solution)])) + ">"
 
     @property
@@ -298,7 +316,7 @@ class CamContact:
     @cached_property
     def largest_pressure(self):
         """Largest Hertz pressure over the period, Pa, and where, between the crank angles given too."""
-        return self._highest(lambda at: np.nan_to_num(at.pressure))
+        return self._highest(lambda at: at.pressure)
 
     @cached_property
     def changes(self):
@@ -334,22 +352,18 @@ class CamContact:
     @cached_property
     def exceeded(self):
         """Sentences about exceeded limits, with both numbers and the crank angle."""
-        peaks = {name: getattr(self, rule[0]) for name, rule in UPPER_LIMITS.items() if name in self.limits}
-        lower = {name: getattr(self, name) for name in LOWER_LIMITS if name in self.limits}
-        return (
-            *(
-                f"{UPPER_LIMITS[name][2]}: {peak.value:.6g} {LIMIT_UNITS[name]} at {np.degrees(peak.angle):.6g} deg, "
-                f"more than {self.limits[name]:.6g}"
-                for name, peak in peaks.items()
-                if peak.value > self.limits[name]
-            ),
-            *self._curve_limits_exceeded(),
-            *(
-                f"{LOWER_LIMITS[name][1]}: {value:.6g} {LIMIT_UNITS[name]}, less than {self.limits[name]:.6g}"
-                for name, value in lower.items()
-                if value < self.limits[name]
-            ),
-        )
+        found = []
+        for name, (peak, unit, words) in UPPER_LIMITS.items():
+            if name in self.limits and (found_peak := getattr(self, peak)).value > self.limits[name]:
+                found.append(
+                    f"{words}: {found_peak.value:.6g} {unit} at {np.degrees(found_peak.angle):.6g} deg, more than "
+                    f"{self.limits[name]:.6g}"
+                )
+        found += self._curve_limits_exceeded()
+        for name, (unit, words) in LOWER_LIMITS.items():
+            if name in self.limits and (value := getattr(self, name)) < self.limits[name]:
+                found.append(f"{words}: {value:.6g} {unit}, less than {self.limits[name]:.6g}")
+        return tuple(found)
 
     def _curve_limits_exceeded(self):
         """Sentences about exceeded limits of pressure angle and curvature."""
@@ -447,9 +461,14 @@ class Contact(CamContact):
 
     def frame(self):
         """Table with a row for each crank angle, a pandas DataFrame."""
-        of_roller = {
-            "pin_load [N]": self.roller.pin_load(self.solution),
-            "roller_spin [rad/s]": self.roller.spin(self.solution),
-            "friction_coefficient [1]": self.roller.friction_coefficient(self.solution),
-        }
-        return super().frame().assign(**of_roller)
+        return (
+            super()
+            .frame()
+            .assign(
+                **{
+                    "pin_load [N]": self.roller.pin_load(self.solution),
+                    "roller_spin [rad/s]": self.roller.spin(self.solution),
+                    "friction_coefficient [1]": self.roller.friction_coefficient(self.solution),
+                }
+            )
+        )

@@ -39,34 +39,41 @@ def write_case(
     table's file has another text.
     """
     path = Path(path)
-    first = next(iter(scenes))
-    parts = [*(f"# {line}" for line in comment.splitlines()), f"title = {_quoted(title)}"]
+    parts = [f"# {line}" for line in comment.splitlines()]
+    parts += [f"title = {_quoted(title)}"]
     parts += [f"source = {_quoted(source)}"] if source else []
+    first = next(iter(scenes))
     parts += [f"reference = {_quoted(first)}"]
     own = {name: reference for name, reference in (references or {}).items() if reference != first}
     for name, scene in scenes.items():
         parts.append(variant(name, scene, path.stem, own.get(name)))
         if drive := (drives or {}).get(name):
             parts.append(table(f"variants.{_key(name)}.drive", drive))
-    for head, given in (("design", designs), ("sizing", sizing)):
-        parts += [table(f"{head}.{_key(name)}", raw) for name, raw in (given or {}).items()]
-    for file, text in (*tables(path, scenes).items(), (path, "\n".join(parts) + "\n")):
+    parts += [table(f"design.{_key(name)}", raw) for name, raw in (designs or {}).items()]
+    parts += [table(f"sizing.{_key(name)}", raw) for name, raw in (sizing or {}).items()]
+    for file, text in tables(path, scenes).items():
         with write_atomically(file) as place:
             Path(place).write_text(text, encoding="utf-8")
+    with write_atomically(path) as place:
+        Path(place).write_text("\n".join(parts) + "\n", encoding="utf-8")
     return path
 
 
 def tables(path, scenes) -> dict[Path, str]:
-    """Text of each file with a table beside the case file; `FileError` if one has another text, as it may be in use."""
+    """Text of each file with a table of the scenes, by path beside the case file; `FileError` if one has another text.
+
+    No table is replaced: an older case file may read it.
+    """
     beside = {path.with_name(file): text for name, scene in scenes.items() for file, text in _files(name, scene, path)}
-    there = [
-        str(file)
-        for file, text in beside.items()
-        if os.path.lexists(file) and not (file.is_file() and file.read_bytes() == text.encode())
-    ]
+    there = [str(file) for file, text in beside.items() if os.path.lexists(file) and not _has_text(file, text)]
     if there:
         raise FileError(f"{', '.join(there)}: exists already; choose another name of the case file")
     return beside
+
+
+def _has_text(path, text):
+    """Whether a file has this text."""
+    return path.is_file() and path.read_bytes() == text.encode()
 
 
 def table(head, raw) -> str:
@@ -89,22 +96,20 @@ def variant(name, scene, stem="case", reference=None) -> str:
         keys["sense"] = f"{scene.sense:.0f}"
     lines = ["", f"[{head}]", *(f"{key} = {value}" for key, value in keys.items())]
     gravity = [item for item in scene.loads if isinstance(item, Gravity)]
+    others = [item for item in scene.loads if not isinstance(item, Gravity)]
     if len(gravity) > 1:
         raise ParameterError("case file: only one Gravity can be written, the scene has several")
-    tables += [("gravity", _keys(item)) for item in gravity]
-    tables += [(f"friction.{_key(joint)}", _keys(friction)) for joint, friction in scene.friction.items()]
-    for item, file in _loads(name, scene, stem):
-        tables.append(("[loads]", {"kind": _quoted(_load_word(item)), **_keys(item, file)}))
+    for item in gravity:
+        tables.append(("gravity", _keys(item)))
+    for joint, friction in scene.friction.items():
+        tables.append((f"friction.{_key(joint)}", _keys(friction)))
+    named = [(item, _table_file(stem, name, f"load_{number}")) for number, item in enumerate(others, 1)]
+    tables += [("[loads]", {"kind": _quoted(_load_word(item)), **_keys(item, file)}) for item, file in named]
     for table, own in tables:
-        opened = f"[[{head}.{table[1:-1]}]]" if table.startswith("[") else f"[{head}.{table}]"
+        repeated = table.startswith("[")
+        opened = f"[[{head}.{table[1:-1]}]]" if repeated else f"[{head}.{table}]"
         lines += ["", opened, *(f"{key} = {value}" for key, value in own.items())]
     return "\n".join(lines)
-
-
-def _loads(variant, scene, stem):
-    """Loads of a variant besides gravity, each with the name of the file of its table."""
-    others = [item for item in scene.loads if not isinstance(item, Gravity)]
-    return [(item, _table_file(stem, variant, f"load_{number}")) for number, item in enumerate(others, 1)]
 
 
 def _table_file(stem, variant, what):
@@ -115,14 +120,16 @@ def _table_file(stem, variant, what):
 
 def _files(variant, scene, path):
     """Name and text of each file with a table of a variant."""
-    for item, file in _loads(variant, scene, path.stem):
+    others = [item for item in scene.loads if not isinstance(item, Gravity)]
+    for number, item in enumerate(others, 1):
         found = item.value_now
         if isinstance(found, Table):
             column, unit = COLUMNS[found.over]
             of = item.RULES.rules[item.VALUE].rule.unit
-            word, unit_text = VALUE_HEADINGS[of], _unit_text(of)
-            columns = {f"{column} [{unit}]": found.sense * found.x, f"{word} [{unit_text}]": found.y}
-            yield file, _columns(columns | ({} if found.back is None else {f"{word}_back [{unit_text}]": found.back}))
+            columns = {f"{column} [{unit}]": found.sense * found.x, f"{VALUE_HEADINGS[of]} [{_unit_text(of)}]": found.y}
+            if found.back is not None:
+                columns[f"{VALUE_HEADINGS[of]}_back [{_unit_text(of)}]"] = found.back
+            yield _table_file(path.stem, variant, f"load_{number}"), _columns(columns)
     for group in scene.mechanism.groups:
         if type(cam := getattr(group, "cam", None)) is Sampled:
             columns = {"angle [rad]": cam.angle, "radius [m]": cam.values}
@@ -174,9 +181,13 @@ def _keys(item, file=""):
     found: dict[str, str] = {}
     for name, rule in item.RULES.rules.items():
         value = getattr(item, name)
-        usual = defaults[name]
-        is_usual = usual is not MISSING and type(value) is type(usual) and value == usual
-        if value is None or is_usual or name == "period":  # a table has one, a constant none
+        if (
+            value is None
+            or name == "period"
+            or (  # a table has one, a constant none
+                defaults[name] is not MISSING and type(value) is type(defaults[name]) and value == defaults[name]
+            )
+        ):
             continue
         if isinstance(value, Guide):
             found |= _guide_keys(value)

@@ -62,7 +62,10 @@ class Constraint:
 
 
 def parse_constraint(text, known, parts=None) -> Constraint:
-    """Constraint from a text such as "largest O <= 0.75 kN", for a scene or another object with a mechanism."""
+    """Constraint from a text such as "largest O <= 0.75 kN" or "ratio mean_absolute balancing_torque >= 50".
+
+    `known` is the scene, or another object with a mechanism. Raises `ParameterError` for any other text.
+    """
     found = _FORM.fullmatch(text.strip()) if isinstance(text, str) else None
     if found is None or not found["value"]:
         raise ParameterError(

@@ -123,6 +123,11 @@ class FollowerContact(CamContact):
         return ("disk",) if self.flat else super().sides
 
     @cached_property
+    def largest_pressure(self):
+        """Largest Hertz pressure over the period, Pa, and its crank angle."""
+        return self._highest(lambda at: np.nan_to_num(at.pressure))
+
+    @cached_property
     def largest_pressure_angle(self):
         """Largest size of the pressure angle, rad, and its crank angle."""
         return Peak(0.0, 0.0) if self.flat else self._highest(lambda at: np.abs(at.pressure_angle))
@@ -237,8 +242,9 @@ def contact(
     given |= {"poissons_ratio": poissons_ratio}
     limits = {} if limits is None else limits
     known = limits if isinstance(limits, dict) else {}
-    numbers = dict(zip(ROLLER_RULES, (roller_mass, life_exponent, roller_inertia, load_rating), strict=True))
-    own = {name: value for name, value in numbers.items() if value is not None or name in ROLLER_DEFAULTS}
+    own = {"roller_mass": roller_mass, "life_exponent": life_exponent}
+    optional = {"roller_inertia": roller_inertia, "load_rating": load_rating}
+    own |= {name: value for name, value in optional.items() if value is not None}
     values = checks.single_numbers(
         "contact",
         *(_follower_problems(led, roller_radius, own, known) if of_follower else ()),
@@ -253,12 +259,14 @@ def contact(
     found: CamContact
     if of_follower:
         found = FollowerContact(solution, group.disk, *size, limits=kept, follower=group)
+        sides = () if led.flat else found.sides[:1]  # an open cam has no ring
     else:
         radius, mass = values["roller_radius"], values["roller_mass"]
         inertia = values.get("roller_inertia", 0.5 * mass * radius * radius)
         wheel = Roller(group.cam, radius, mass, inertia, values.get("load_rating"), values["life_exponent"])
         found = Contact(solution, group.cam, *size, limits=kept, roller=wheel)
-    for side in () if led.flat else found.sides[: 1 if of_follower else None]:  # an open cam has no ring
+        sides = found.sides
+    for side in sides:
         working_curve(found.cam, found.roller_radius, 8, side)
     return found
 
@@ -283,10 +291,12 @@ def _follower_problems(led, roller_radius, own, limits):
     """Sentences about numbers and limits, by name, that the contact of a follower does not have."""
     if led.flat and roller_radius is not None:
         yield f"the {led.link} has a flat face, so it takes no roller_radius"
-    usual = {
-        name for name, value in own.items() if isinstance(value, int | float) and value == ROLLER_DEFAULTS.get(name)
-    }
-    if names := [*(name for name in own if name not in usual), *(name for name in limits if name in ROLLER_LIMITS)]:
+    given = [
+        name
+        for name, value in own.items()
+        if not (isinstance(value, int | float) and value == ROLLER_DEFAULTS.get(name))
+    ]
+    if names := [*given, *(name for name in limits if name in ROLLER_LIMITS)]:
         yield f"load and life of a roller are computed for a CamRoller only; the {led.link} takes no {', '.join(names)}"
 
 
@@ -304,12 +314,14 @@ def _contact_rules(given, group, part):
         field_name = name.removeprefix("roller_")
         own, other = getattr(own_part, field_name), getattr(own_part, f"cam_{field_name}", None)
         found[name] = own if other is None else (own, other)
-    rules: dict[str, Any] = {name: (found[name], "m", POSITIVE) for name in ("roller_radius", "width") if name in found}
-    for name, rule in MATERIAL_RULES.items():
-        value = found[name]
-        paired = isinstance(value, list | tuple) and len(value) == 2
-        for body, own in zip((part, "cam"), value if paired else (value, value), strict=True):
-            rules[f"{name} of the {body}"] = (own, *rule)
+    rules: dict[str, tuple[Any, str, dict[str, Any]]] = {
+        name: (found[name], "m", POSITIVE) for name in ("roller_radius", "width") if name in found
+    }
+    for place, body in enumerate((part, "cam")):
+        for name, rule in MATERIAL_RULES.items():
+            value = found[name]
+            paired = isinstance(value, list | tuple) and len(value) == 2
+            rules[f"{name} of the {body}"] = (value[place] if paired else value, *rule)
     return rules
 
 
@@ -317,6 +329,6 @@ def _limit_problems(limits, load_rating):
     """Sentences about wrong names of limits."""
     if not isinstance(limits, dict):
         return [f"limits must be a dict of name to number, got {checks.shown(limits)}"]
+    rating = "a limit of the life takes the load_rating of the roller's bearing"
     unrated = "life" in limits and load_rating is None
-    rating = "a limit of the life takes the load_rating of the roller's bearing" if unrated else None
-    return [*(checks.choice("limit", name, tuple(LIMIT_UNITS)) for name in limits), rating]
+    return [*(checks.choice("limit", name, tuple(LIMIT_UNITS)) for name in limits), rating if unrated else None]

@@ -34,10 +34,8 @@ def read_duties(source, variant, reference) -> dict[str, Duty]:
     if not isinstance(source, Mapping):
         item, compared = choose_design(source, variant, reference)
         return {"": Duty(item, compared, 1.0)}
-    problems = [
-        None if variant is None else "variant is for cases; each duty has its scene",
-        None if source else "give at least one duty",
-    ]
+    problems = [None if variant is None else "variant is for cases; each duty has its scene"]
+    problems += [None if source else "give at least one duty"]
     found: dict[str, Duty] = {}
     references = reference if isinstance(reference, Mapping) else dict.fromkeys(source, reference)
     problems += [checks.choice("duty of reference", name, tuple(source)) for name in references]
@@ -71,14 +69,14 @@ def read_duties(source, variant, reference) -> dict[str, Duty]:
 
 def mean_value(output, duties):
     """Mean of an output over duties, weighted by their shares; NaN where a machine lacks it."""
+    return sum(duty.share * _value(output, duty) for duty in duties.values())
 
-    def value(duty):
-        scene = scene_of(duty.source)
-        if isinstance(output, Output) and output.quantity not in of_scene(scene):
-            return np.nan
-        return compared_value(output, scene, duty.reference and scene_of(duty.reference))
 
-    return sum(duty.share * value(duty) for duty in duties.values())
+def _value(output, duty):
+    scene = scene_of(duty.source)
+    if isinstance(output, Output) and output.quantity not in of_scene(scene):
+        return np.nan
+    return compared_value(output, scene, duty.reference and scene_of(duty.reference))
 
 
 def _parts_of(source):
@@ -121,7 +119,10 @@ def limits_of(limits, names) -> dict[str, list]:
 
 
 class DutyProblem:
-    """One machine in duties by name, with the quantities of each; outputs are means weighted by the shares of time."""
+    """Problems of one machine in its duties, by name; outputs are means weighted by the shares of time.
+
+    `quantities` are the quantities of each duty by name.
+    """
 
     def __init__(self, duties, vary, quantities, angles, engine):
         def problem(name, duty):
@@ -133,11 +134,12 @@ class DutyProblem:
         self.names, self.low, self.high, self.angles = first.names, first.low, first.high, angles
         self.start, self.units, self.numbers = first.start, first.units, first.numbers
         self.stepped: Any = None
-        texts = []
-        for path, *values in zip(self.names, *(part.start for part in self.parts.values()), strict=True):
-            if np.ptp(values):
-                pairs = zip(self.parts, values, strict=True)
-                texts.append(f"{path} is {', '.join(f'{value:.9g} in {name}' for name, value in pairs)}")
+        starts = np.array([part.start for part in self.parts.values()])
+        texts = [
+            f"{path} is {', '.join(f'{value:.9g} in {name}' for name, value in zip(self.parts, row, strict=True))}"
+            for path, row in zip(self.names, starts.T, strict=True)
+            if np.ptp(row)
+        ]
         checks.require("design", f"all duties need the same varied numbers, but {'; '.join(texts)}" if texts else None)
 
     @property

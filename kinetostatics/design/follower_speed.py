@@ -127,20 +127,18 @@ def _lift_off_by_search(solution, force, fast, side, angle):
     def least(speed, angle):
         return float(np.min(side * _force(solution, force, np.copysign(speed, fast), angle)))
 
-    def vanishing(above, angle):
-        return float(brentq(least, REST_SPEED_RATIO * abs(fast), above, (angle,), rtol=SPEED_TOLERANCE))
-
+    rest = REST_SPEED_RATIO * abs(fast)
     speeds = abs(fast) * np.geomspace(0.01, MAX_SPEED_RATIO, 61)
     above = next((speed for speed in speeds if least(speed, angle) < 0.0), None)
-    if above is None:
-        return np.inf
-    before, speed = np.inf, vanishing(above, angle)
-    while speed < before * (1.0 - SPEED_TOLERANCE):
+    speed = np.inf if above is None else float(brentq(least, rest, above, (angle,), rtol=SPEED_TOLERANCE))
+    while np.isfinite(speed):  # the force is smallest between those angles
         found = extrema(_solution_at(solution, np.copysign(speed, fast), 0.0), force)
-        lowest = found.angle[[np.argmin(side * found.value)]]  # between those angles
+        lowest = found.angle[[np.argmin(side * found.value)]]
         if least(speed, lowest) >= 0.0:
             break
-        before, speed = speed, vanishing(speed, lowest)
+        before, speed = speed, float(brentq(least, rest, speed, (lowest,), rtol=SPEED_TOLERANCE))
+        if speed >= before * (1.0 - SPEED_TOLERANCE):
+            break
     return speed
 
 
@@ -262,11 +260,11 @@ def spring_surge(solution, spring_mass=None):
     springs = [load for load in solution.loads if isinstance(load, Spring)]
     if spring_mass is None and not any(np.any(spring.mass) for spring in springs):
         raise ParameterError("spring_surge: spring_mass must be given, kg, since no Spring of the solution has a mass")
+    given = springs[0].mass if spring_mass is None else spring_mass
+    mass = checks.single_numbers("spring_surge", spring_mass=(given, "kg", POSITIVE))["spring_mass"]
     if len(springs) != 1:
         raise ParameterError(f"spring_surge: needs a solution with one Spring among its loads, got {len(springs)}")
     (spring,) = springs
-    given = spring.mass if spring_mass is None else spring_mass
-    mass = checks.single_numbers("spring_surge", spring_mass=(given, "kg", POSITIVE))["spring_mass"]
     pieces = Pieces(edges_between(solution.sampled.pieces.edges, 2.0 * TURN / HARMONICS), SURGE_POINTS)
     angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
     end = solution.at(angle).placement.travels[spring.on].position
@@ -276,7 +274,8 @@ def spring_surge(solution, spring_mass=None):
     waves = np.exp(1j * np.outer(np.arange(HARMONICS), angle))
     series = np.abs(waves @ (weights * end))
     series[1:] *= 2.0
-    natural, speed = float(surge.surge_frequency(rate, mass)), abs(float(np.mean(solution.crank_speed)))
+    natural = float(surge.surge_frequency(rate, mass))
+    speed = abs(float(np.mean(solution.crank_speed)))
     return Surge(natural, natural / speed if speed else np.inf, series)
 
 

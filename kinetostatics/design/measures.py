@@ -45,7 +45,10 @@ def reduced(reduction, curve):
 
 
 def bounded(reduction, curve):
-    """Values (parts,) of all competing peaks, whose maximum is a reduction in `SIDES`, and derivatives (n, parts)."""
+    """Values (parts,) whose maximum is a reduction in `SIDES` ("smallest": its negative), and derivatives (n, parts).
+
+    Each competing peak counts.
+    """
     if reduction != "swing":
         parts = [curve.tops(side, SECTORS) for side in SIDES[reduction]]
         return np.concatenate([values for values, _ in parts]), np.concatenate([slopes for _, slopes in parts], axis=1)
@@ -104,7 +107,10 @@ def size(values, slopes):
 
 
 def _through_peaks(samples):
-    """Weights (peaks, samples) of samples around peaks; where they fit no polynomial only the middle one counts."""
+    """Weights (peaks, samples) of the samples around peaks in the heights; at need only of the middle one.
+
+    That is the case if it is no peak, or the samples do not fit a polynomial, as at a jump.
+    """
     bends = np.diff(samples, 2)[:, REACH - 2 : REACH + 1]
     peaks = np.flatnonzero((bends < 0).all(axis=1) & (samples[:, REACH - 1 : REACH + 2].argmax(axis=1) == 1))
     weights = np.tile((_AROUND == 0).astype(float), (len(samples), 1))

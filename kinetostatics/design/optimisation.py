@@ -193,6 +193,12 @@ class SearchStep(NamedTuple):
     missed: float
 
 
+def _step(problem, goal, limits, values):
+    """`SearchStep` of a design."""
+    value, _ = problem.output(goal.output, values)
+    return SearchStep(problem.numbers(values), float(value), worst_excess(problem, limits, values))
+
+
 def parse_task(scene, minimise, maximise, limits, reference, angles, kept=(), parts=None) -> Task:
     """Task of a search from texts, with the limits `kept` first; an error without a needed reference or angles."""
     if (minimise is None) == (maximise is None):
@@ -203,8 +209,8 @@ def parse_task(scene, minimise, maximise, limits, reference, angles, kept=(), pa
     ratio = next((str(output) for output in task.outputs if output.ratio), None)
     if ratio is not None and reference is None:
         raise ParameterError(f"design: {ratio!r} needs a reference: a Scene, as reference=plain")
-    orders = [output.order or 0 for output in task.outputs if isinstance(output, Output)]
-    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders)])
+    orders = [output.order for output in task.outputs if isinstance(output, Output)]
+    needed = max([MIN_ANGLES, *(2 * order + 1 for order in orders if order)])
     if angles < needed:
         raise ParameterError(f"design: angles must be at least {needed} for the given outputs, got {angles}")
     return task
@@ -238,7 +244,10 @@ def _numbers_text(problem, values):
 
 
 def best_design(problem, task, begins, reported, robust, progress) -> Found:
-    """Best of the searches for a task, or the quantile of its output; `DesignError` if limits cannot be kept."""
+    """Best of the searches from several designs for a task, or for the quantile of its output over a spread.
+
+    Raises `DesignError` if no design keeps the limits at exact extremes.
+    """
     text, output, sign, limits = task
     checks.require(
         "design",
@@ -252,12 +261,8 @@ def best_design(problem, task, begins, reported, robust, progress) -> Found:
     # limits by tables over travel are added; for a robust goal they hold for each machine of the spread
     own = (*problem.table_limits, *(goal.output.within_tables() if robust is not None else ()))
     kept = (*limits, *own)
-
-    def report(values):
-        reached = float(problem.output(goal.output, values)[0])
-        progress(SearchStep(problem.numbers(values), reached, worst_excess(problem, kept, values)))
-
-    with progress_bar(problem, begins, report if callable(progress) else progress) as numbered:
+    reporter = (lambda values: progress(_step(problem, goal, kept, values))) if callable(progress) else progress
+    with progress_bar(problem, begins, reporter) as numbered:
         ends = [search_from(problem, searched, (*plain, *own), start) for start in numbered]
         best = reduce(better, ends)
         if best.missed > MISSED:
@@ -293,10 +298,10 @@ def _without_ratios(problem, goal, limits):
         return goal, limits
     turned, found = {"<=": ">=", ">=": "<=", "=": "="}, []
     for limit in limits:
-        output = limit.output
+        output, part = limit.output, problem.duty(limit.duty)
         if isinstance(output, Output) and output.ratio and limit.value > 0 and limit.duty != MEAN:
-            plain, reference = without_ratio(output), problem.duty(limit.duty).reference
-            value = true_value(plain, scene_of(reference)) / limit.value
+            plain = without_ratio(output)
+            value = true_value(plain, scene_of(part.reference)) / limit.value
             limit = replace(limit, output=plain, relation=turned[limit.relation], value=value)
         found.append(limit)
     if not isinstance(goal.output, Output) or not goal.output.ratio or "" not in problem.parts:
@@ -308,8 +313,9 @@ def _failure_text(problem, goal, limits, best, count):
     """Sentence about the nearest design of failed searches, or the obstacle to any design."""
     tries = "the search" if count == 1 else f"any of {count} searches"
     if not np.isfinite(best.missed):
-        numbers, whose = _numbers_text(problem, best.values), ""
+        numbers = _numbers_text(problem, best.values)
         obstacle = f"the one with {numbers} runs, but required outputs have no value"
+        whose = ""
         try:
             for part in problem.parts.values():
                 solution = part.scene(best.values).solve(problem.angles)
@@ -330,9 +336,12 @@ def _failure_text(problem, goal, limits, best, count):
         for limit in limits
         if worst_excess(problem, [limit], best.values) > MISSED
     ]
-    near = np.minimum(best.values - problem.low, problem.high - best.values) <= 1e-6 * (problem.high - problem.low)
-    at_bounds = ", ".join(name for name, is_near in zip(problem.names, near, strict=True) if is_near)
-    bounds = f"; at their bounds are {at_bounds}" if at_bounds else ""
+    at_bounds = [
+        name
+        for name, value, low, high in zip(problem.names, best.values, problem.low, problem.high, strict=True)
+        if min(value - low, high - value) <= 1e-6 * (high - low)
+    ]
+    bounds = f"; at their bounds are {', '.join(at_bounds)}" if at_bounds else ""
     return f"no design that keeps all limits was found by {tries}; the nearest misses {'; '.join(reached)}{bounds}"
 
 
@@ -368,7 +377,10 @@ def _tighten_limits(problem, goal, limits, best) -> SearchEnd:
 
 
 def _true_excess_of(problem, limit, values):
-    """Excess over a limit as in `excess_over`, but at exact extremes unless it is a ratio or over a spread."""
+    """Excess of a design over a limit at exact extremes, not positive if it is kept; for an equality the difference.
+
+    For an output over a spread, or a ratio, it is the excess at the crank angles of the search.
+    """
     if not isinstance(limit.output, Output) or limit.output.ratio:
         return excess_over(problem, limit, values)[0][0]
     whole = problem.duty(limit.duty)

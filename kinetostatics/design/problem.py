@@ -80,7 +80,10 @@ BAR_DELAY = 1.0
 
 @contextmanager
 def progress_bar(problem, begins, progress):
-    """Context that yields where searches begin; their steps move a bar, or call the function `progress`."""
+    """Context in which steps of the searches move a bar; it yields where they begin, which numbers them on the bar.
+
+    `progress` is True for the bar, or a function that is called with the numbers of each step instead.
+    """
     from tqdm import tqdm
 
     words = "search {} of " + str(len(begins))

@@ -136,38 +136,41 @@ class Found:
         """
         import pandas as pd
 
-        duties, before = self.duties(), self.duties(before=True)
-        scenes = [duty.source for duty in duties.values()]
-        mechanism, hints = scenes[0].mechanism, []
+        mechanism = self._first.mechanism
         if self.shaft_radius is not None and CAM_RADIUS in of_scene(self.scene):
             nearest = compared_value(parse_output(f"smallest {CAM_RADIUS}", self.scene), self.scene, None)
-            hints.append(shaft_hint(nearest, mechanism.rollers.get("A"), self.shaft_radius))
-        hints += [text for scene in scenes for text in scene.check_resolution().hints]
-        for hint in dict.fromkeys(filter(None, hints)):
-            warnings.warn(HintWarning(mechanism.name, hint), stacklevel=2)
+            hint = shaft_hint(nearest, mechanism.rollers.get("A"), self.shaft_radius)
+            if hint:
+                warnings.warn(HintWarning(mechanism.name, hint), stacklevel=2)
+        duties, before = self.duties(), self.duties(before=True)
+        scenes = [duty.source for duty in duties.values()]
+        for text in dict.fromkeys(text for scene in scenes for text in scene.check_resolution().hints):
+            warnings.warn(HintWarning(mechanism.name, text), stacklevel=2)
+        limits: dict[str, list[Constraint]] = {}
+        for limit in self.limits:
+            limits.setdefault(limit.place, []).append(limit)
         rows = {}
         if self.spread is not None:
             output, spread, sign = self.spread
-            pair = {name: quantile(of, output, spread, sign) for name, of in (("before", before), ("after", duties))}
+            values = [quantile(item, output, spread, sign) for item in (before, duties)]
             alone = {"limit": "", "binds": False, "price": np.nan}
+            pair = dict(zip(("before", "after"), values, strict=True))
             rows[f"{spread.quantile:g} quantile of {output.column}"] = pair | alone
         for output in self.outputs:
             own_rows = {MEAN: list(duties)} if self.shares else {}
             own_rows |= {name: [name] for name in duties}
             for name, of in own_rows.items():
-                place = f"{name}: {output}" if name else str(output)
-                own = [limit for limit in self.limits if limit.place == place]
-                if self.shares and output is not self.outputs[0] and not own:
+                if self.shares and output is not self.outputs[0] and f"{name}: {output}" not in limits:
                     continue  # neither goal nor limited in this duty
+                own = limits.get(f"{name}: {output}" if name else str(output), [])
                 share = 1.0 if name == MEAN else duties[name].share
                 found = [mean_value(output, {key: items[key] for key in of}) / share for items in (before, duties)]
-                prices = [self.prices[str(limit)] for limit in own if str(limit) in self.prices]
                 rows[f"{name}: {output.column}" if name else output.column] = {
                     "before": found[0],
                     "after": found[1],
                     "limit": ", ".join(f"{limit.relation} {limit.value:.9g}" for limit in own),
                     "binds": any(str(limit) in self.active for limit in own),
-                    "price": prices[0] if prices else np.nan,
+                    "price": next((self.prices[str(limit)] for limit in own if str(limit) in self.prices), np.nan),
                 }
         return with_resolution(pd.DataFrame.from_dict(rows, orient="index").rename_axis("output"), *scenes)
 
@@ -179,10 +182,15 @@ class Found:
         import pandas as pd
 
         own, units = next(iter(self.duties(before=True).values())).source.parameters, self._first.units
-        columns = {"before": own, "after": self.values, "price": self.prices}
-        index = pd.Index([f"{path} [{units[path]}]" for path in self.values], name="number")
-        rows = {name: [known.get(path, np.nan) for path in self.values] for name, known in columns.items()}
-        return pd.DataFrame(rows, index)
+        rows = {
+            f"{path} [{units[path]}]": {
+                "before": own.get(path, np.nan),
+                "after": value,
+                "price": self.prices.get(path, np.nan),
+            }
+            for path, value in self.values.items()
+        }
+        return pd.DataFrame.from_dict(rows, orient="index").rename_axis("number")
 
     def case(self, path, name="optimal", title=None):
         """Write a case file, ready to run: the design, the source, and the reference of ratios.
@@ -230,7 +238,10 @@ def shaft_hint(nearest, roller_radius, shaft_radius):
 
 
 def active_prices(problem, goal, limits, values):
-    """Active limits and bounds, and their prices by Kuhn and Tucker: gain of the goal if one is relaxed by a unit."""
+    """Active limits and bounds, and their prices: gain of the goal if one is relaxed by one unit.
+
+    The derivatives of the goal are the sum of those of the active limits times their prices (Kuhn and Tucker).
+    """
     from scipy.optimize import lsq_linear
 
     output, sign = goal
@@ -243,18 +254,21 @@ def active_prices(problem, goal, limits, values):
             slopes = share * slopes[:, order[heights[order] >= heights.max() - ACTIVE_TOLERANCE * abs(heights.max())]]
             first, others = first + slopes[:, 0], np.hstack([others, slopes[:, 1:] - slopes[:, :1]])
     reach = problem.high - problem.low
-    active = []  # name, derivatives, whether the price may be negative
+    names, columns, free = [], [], []
     for limit in limits:
         excess, changes = excess_over(problem, limit, values)
-        near = np.abs(excess) <= ACTIVE_TOLERANCE * limit.scale
-        active += [(str(limit), column, limit.relation == "=") for column in changes.T[near]]
+        for place in np.flatnonzero(np.abs(excess) <= ACTIVE_TOLERANCE * limit.scale):
+            names.append(str(limit))
+            columns.append(changes[:, place])
+            free.append(limit.relation == "=")
     for number, name in enumerate(problem.names):
         for end, side in ((problem.low, -1.0), (problem.high, 1.0)):
             if abs(values[number] - end[number]) <= ACTIVE_TOLERANCE * reach[number]:
-                active.append((name, side * np.eye(values.size)[number], False))
-    if not active:
+                names.append(name)
+                columns.append(side * np.eye(values.size)[number])
+                free.append(False)
+    if not names:
         return (), {}
-    names, columns, free = zip(*active, strict=True)
     matrix = np.array(columns).T * reach[:, None]
     weight = np.linalg.norm(matrix, axis=0)
     weight[weight == 0] = 1.0

@@ -302,7 +302,10 @@ class SampledOutput:
         return np.broadcast_to(self.program(angle, numbers)[self.output.quantity], shape)
 
     def _curves(self, numbers, changes, angle=None):
-        """Values and derivatives (samples, n, N) at angles (N,) or (samples, N), from `changes` (paths, samples, n)."""
+        """Values and derivatives (samples, n, N) at crank angles, (N,) for all samples or (samples, N).
+
+        `changes` (paths, samples, n) are the derivatives of the numbers.
+        """
         angle = self.angle if angle is None else angle
         values = self._components(numbers, angle)
         found = self.program.derivatives(angle, self._design_numbers.paths, numbers)[self.output.quantity]
@@ -489,7 +492,10 @@ def _between(one, other, share):
 
 
 def _best_shares(function, count):
-    """Minimisers in [0, 1] of functions (K,) with one minimum each, reflected at 0 and 1 to bracket a minimum there."""
+    """Minimiser in [0, 1] of each of several functions (K,) of arguments and their numbers, with one minimum there.
+
+    The functions are reflected at 0 and 1, so that a minimum there lies inside a bracket.
+    """
 
     def reflected(place, number):
         return function(1.0 - np.abs(1.0 - np.abs(place - SHIFT)), number)

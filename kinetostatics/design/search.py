@@ -133,7 +133,10 @@ def within_tables(problem, limits, start):
 
 
 def restore_limits(problem, limits, values):
-    """Nearest design that keeps limits which SLSQP slightly missed, by Newton's method; the same if that fails."""
+    """Nearest design that keeps limits, by Newton's method from small excesses; the same design if that fails.
+
+    SLSQP may stop slightly beyond limits if rounding hides the descent.
+    """
     off = worst_excess(problem, limits, values)
     reach = problem.high - problem.low
     for _ in range(MAX_RESTORING_STEPS):

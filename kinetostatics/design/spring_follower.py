@@ -43,7 +43,10 @@ def reserve(energy, low, level, mass, stiffness):
 
 
 def spring_stretch(energy, level, mass, stiffness):
-    """Stretch x over the crank angle, `Panels`, m, with `mass` m omega^2; `ParameterError` where it lifts off."""
+    """Stretch x of the spring over the crank angle, as `Panels`, m, for an energy in panels; `mass` is m omega^2.
+
+    Raises `ParameterError`, with the crank angle, if the follower lifts off: no smooth solution stays in contact.
+    """
     rows = chebyshev.chebder(energy.coefficients, axis=1) * (2.0 / np.diff(energy.edges)[:, None])
     slope = Panels(energy.edges, np.pad(rows, ((0, 0), (0, 1))))
     turns, found = slope.roots, []

@@ -38,7 +38,10 @@ MAX_LEAST_SQUARES_STEPS = 100
 
 
 def least_squares(problem, start, values):
-    """Design with least squares of torque and missed ends of the stroke, over the numbers `start.first`."""
+    """Least-squares design for torque and errors of the stroke's ends, by Gauss-Newton steps.
+
+    Only numbers of the cam, the coupler and the linear spring change.
+    """
     for weight, smooth in LEAST_SQUARES_PASSES:
         values = _least_squares_pass(problem, start, values, weight, smooth)
     return np.clip(values, problem.low, problem.high)
@@ -218,7 +221,10 @@ def torque_free_cam(
 
 
 def ratio_bound(start, scene, reference):
-    """Largest ratio of mean torques of a symmetric cam: the weight of the coupler rises and falls twice a turn."""
+    """Largest ratio of mean torques of a symmetric cam, which leaves the torque of the coupler's weight.
+
+    The weight rises and falls twice a turn by the largest height of A.
+    """
     if reference is None or not start.weight:
         return np.inf
     guide = scene.mechanism.guides[scene.mechanism.slider]

@@ -70,18 +70,15 @@ def compute_batch(scene, job, count, outputs):
         _reduce_by_numpy(solution, smooth, numbers, rough, gaps, nearest)
     reasons = np.full(made, "", dtype=object)
     for row in np.flatnonzero(gaps):
-        reasons[row] = _gap_text(scene, f"at {gaps[row]} of {job.angles} crank angles")
+        where = f"at {gaps[row]} of {job.angles} crank angles"
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
     if kinked.any():
         split = [item for item in outputs if item not in smooth]
         found = np.empty((2, len(outputs), made))
-        found[:, ~kinked], found[:, kinked] = (numbers, rough), job.split_turns(scene, split).estimated(split)
+        found[:, ~kinked], found[:, kinked] = (numbers, rough), _split_turns(scene, job, split).estimated(split)
         numbers, rough = found[0], found[1] > 0
     for_all = (np.broadcast_to(part, (*part.shape[:-1], count)) for part in (numbers, reasons, rough, nearest))
     return *map(np.array, for_all), kinked
-
-
-def _gap_text(scene, where):
-    return f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
 
 
 def _reduce_by_loop(solution, outputs, threads, *found):
@@ -105,7 +102,8 @@ def _reduce_by_loop(solution, outputs, threads, *found):
 
     starts = range(0, count, step)
     if threads == 1 or len(starts) == 1:
-        list(map(fill, starts))
+        for start in starts:
+            fill(start)
     else:
         with ThreadPoolExecutor(threads) as pool:
             list(pool.map(fill, starts))
@@ -125,6 +123,10 @@ def _reduce_by_numpy(solution, outputs, numbers, rough, gaps, nearest):
         near = ~gaping & (margin < NEAR).any(axis=0)
         if near.any():
             nearest[near] = solution.crank_angle[closure[:, near].min(axis=0).argmin(axis=-1)]
+
+
+def _split_turns(scene, job, outputs):
+    return PiecewiseTurns.of(scene, outputs, job.angles, job.kink_tolerance, job.engine)
 
 
 MAX_PROBED_DESIGNS = 64
@@ -205,19 +207,24 @@ class Job:
         arrays = dict(zip(names, given.T.copy()[..., None], strict=True))  # a copy: functions may change it
         return [arrays] if len(given) > 1 else [arrays, {name: float(value[0, 0]) for name, value in arrays.items()}]
 
-    def split_turns(self, scene, outputs):
-        """Turns of designs, split at the kinks of some outputs."""
-        return PiecewiseTurns.of(scene, outputs, self.angles, self.kink_tolerance, self.engine)
-
 
 class _NoSceneError(ParameterError):
     """A function returns no scene."""
 
 
 def dry_run(job, designs, engines):
-    """The job with engine and units by the first valid design, or None; errors that concern every design are raised."""
-    if job.angles < MIN_ANGLES:
-        raise ParameterError(f"sweep: angles must be at least {MIN_ANGLES}, got {job.angles}: they miss every peak")
+    """The job with the first engine that supports the mechanism, and with units of outputs; None if no design is valid.
+
+    Errors that concern every design are raised. `QuantityError`: the mechanism lacks a quantity. `ParameterError`: a
+    function returns no scene, there are too few crank angles, or loads do not repeat after their period.
+    `NotGivenError`: no engine supports the mechanism.
+    """
+    few = (
+        None
+        if job.angles >= MIN_ANGLES
+        else f"angles must be at least {MIN_ANGLES}, got {job.angles}: they miss every peak"
+    )
+    checks.require("sweep", few)
     for row in range(len(designs)):
         *_, plain = job.values(job.given(designs.iloc[row : row + 1]))
         try:
@@ -261,7 +268,10 @@ def scene_of(make, values):
 
 
 def _engine_of(pairs, engines):
-    """First engine that supports the mechanism, for pairs of solution and side; whether its loop needs no tables."""
+    """First engine that supports the mechanism, and whether its loop needs no tables.
+
+    `pairs` are a solution and (maker, outputs) of the designs and of the reference.
+    """
     if engines[0] == "numpy":
         return "numpy", False
     try:
@@ -363,8 +373,7 @@ def _compute_designs(make, job, given, outputs, earlier=None, refused=False):
             error = caught
     if count == 1:
         return np.full((len(outputs), 1), np.nan), np.array([str(error) or type(error).__name__], dtype=object)
-    wrong: Any = np.ravel(getattr(error, "designs", False))  # those that the error names
-    wrong = wrong if wrong.size == count and wrong.any() else None
+    wrong = _designs_at_fault(error, count)
     if wrong is None and scene is not None:
         parts = np.array_split(np.arange(count), 2)
     else:
@@ -418,7 +427,7 @@ def _noise_by_design(make, job, given, outputs, asked):
     for start in range(0, designs.size, MAX_SPLIT_DESIGNS):
         some = designs[start : start + MAX_SPLIT_DESIGNS]
         scene = scene_of(make, job.values(given[some])[-1])
-        turns, solution = job.split_turns(scene, wanted.values()), unchecked_turn(scene, job.angles)
+        turns, solution = _split_turns(scene, job, wanted.values()), unchecked_turn(scene, job.angles)
         pieces = turns.pieces
         with np.errstate(all="ignore"):
             values = turns.values(quantity_names(wanted.values()), pieces.owner, pieces.angle)
@@ -431,7 +440,10 @@ def _noise_by_design(make, job, given, outputs, asked):
 
 
 def _check_near_limits(make, job, given, nearest, outputs):
-    """Reasons of designs that do not close or lose all digits near `nearest`, and whether peaks may hide there."""
+    """Reasons of designs that do not close or lose all digits between crank angles, and whether peaks may be there.
+
+    Each design is computed again around the crank angle nearest to a limit position.
+    """
     scene = scene_of(make, job.values(given)[-1])
     step = scene.period / job.angles
     angle = nearest[:, None] + step * np.linspace(-1.5, 1.5, 25)
@@ -440,7 +452,8 @@ def _check_near_limits(make, job, given, nearest, outputs):
     place = np.round(angle[:, 12] + place, 9) % scene.period
     reasons = np.full(len(given), "", dtype=object)
     for row in np.flatnonzero(margin < -SQUARE_TOLERANCE):
-        reasons[row] = _gap_text(scene, f"between the crank angles, at {np.degrees(place[row]):.6g} deg")
+        where = f"between the crank angles, at {np.degrees(place[row]):.6g} deg"
+        reasons[row] = f"{scene.mechanism.name} cannot be assembled {where}; change the lengths"
     if all(quantity(scene, item.quantity).unit == "m" for item in outputs):
         return reasons, np.zeros(len(given), dtype=bool)
     with np.errstate(all="ignore"):
@@ -449,6 +462,12 @@ def _check_near_limits(make, job, given, nearest, outputs):
     for row in np.flatnonzero(np.ravel(lost) & (reasons == "")):
         reasons[row] = f"has no correct digit at crank angle {np.degrees(place[row]):.6g} deg, a limit position"
     return reasons, narrow
+
+
+def _designs_at_fault(error, count):
+    """Mask of the designs that an error names; None if it names no design."""
+    wrong: Any = getattr(error, "designs", None)
+    return np.ravel(wrong) if np.size(wrong) == count and np.any(wrong) else None
 
 
 def _find_unbuildable(make, job, given):

@@ -72,10 +72,15 @@ class Dataset(ChunkResults):
         self._sound = {path for path, problem in problems.items() if problem is None}
         unsound = [f"{path.name} ({problem})" for path, problem in problems.items() if problem]
         if unsound:
-            more = len(unsound) - MAX_LISTED_FILES
-            listed = ", ".join(unsound[:MAX_LISTED_FILES]) + (f" and {more} more" if more > 0 else "")
-            what = "these files are not parts of this sweep and are computed again or left out"
-            warnings.warn(f"sweep: in {self._folder} {what}: {listed}", CacheWarning, stacklevel=3)
+            listed = ", ".join(unsound[:MAX_LISTED_FILES]) + f" and {len(unsound) - MAX_LISTED_FILES} more" * (
+                len(unsound) > MAX_LISTED_FILES
+            )
+            warnings.warn(
+                f"sweep: in {self._folder} these files are not parts of this sweep and are computed again or left out: "
+                f"{listed}",
+                CacheWarning,
+                stacklevel=3,
+            )
 
     def holds(self, number):
         return self._path(number) in self._sound

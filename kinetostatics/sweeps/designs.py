@@ -66,15 +66,25 @@ def grid(spreads) -> pd.DataFrame:
 def latin_hypercube(spreads, count, seed=0) -> pd.DataFrame:
     """Designs spread evenly over each single parameter (Latin hypercube).
 
-    Spreads, result and errors as for `sample`; there may not be more designs than a table allows.
-
     Parameters
     ----------
     spreads : dict of parameter to text or quantities
+        As for `sample`.
     count : int
         Number of designs; each equal part of the range of a parameter contains one.
     seed : int
         Seed of the random numbers.
+
+    Returns
+    -------
+    pandas.DataFrame
+        A column for each parameter, with its unit.
+
+    Raises
+    ------
+    ParameterError
+        A spread has another form, its unit is unknown or of the wrong dimension for a known parameter, or
+        there are more designs than a table allows.
 
     Examples
     --------
@@ -169,11 +179,13 @@ def sample(spreads, uniform) -> pd.DataFrame:
     fits = numbers.ndim == 2 and numbers.shape[1] == len(found)
     checks.require("designs", None if fits else f"{len(found)} parameters need one column each, got {numbers.shape}")
     wrong = numbers[~((numbers >= 0.0) & (numbers <= 1.0))]
-    if wrong.size:
-        raise ParameterError(
-            f"designs: the numbers must be from 0 to 1 (cumulative probability), but {wrong.size} of {numbers.size} "
-            f"are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
-        )
+    checks.require(
+        "designs",
+        f"the numbers must be from 0 to 1 (cumulative probability), but {wrong.size} of "
+        f"{numbers.size} are not, {wrong[0]:g} for instance; give them as (values - low) / (high - low)"
+        if wrong.size
+        else None,
+    )
     values = [distribution.ppf(column) for (distribution, _), column in zip(found.values(), numbers.T, strict=True)]
     unbounded = [name for name, column in zip(found, values, strict=True) if not np.isfinite(column).all()]
     checks.require(
@@ -185,13 +197,12 @@ def sample(spreads, uniform) -> pd.DataFrame:
 def _require_table_size(count, parameters, *problems):
     """Raise an error with all problems if a table is too large."""
     whole = isinstance(count, int | np.integer) and not isinstance(count, bool)
-    large = whole and count * parameters > MAX_TABLE_VALUES
     checks.require(
         "designs",
         None if whole and count > 0 else f"count must be a whole number of at least 1, got {count!r}",
         f"{count} designs of {parameters} parameters are too many for one table of at most {MAX_TABLE_VALUES} "
         "values; sweep them in parts"
-        if large
+        if whole and count * parameters > MAX_TABLE_VALUES
         else None,
         *problems,
     )
@@ -199,8 +210,10 @@ def _require_table_size(count, parameters, *problems):
 
 def _design_table(values, found):
     """Table of designs; an error if the unit of a known parameter has the wrong dimension."""
-    strange = [checks.shown(name) for name in found if not isinstance(name, str)]
-    checks.require("designs", *(f"a parameter must be a name, got {name}" for name in strange))
+    checks.require(
+        "designs",
+        *(f"a parameter must be a name, got {checks.shown(name)}" for name in found if not isinstance(name, str)),
+    )
     problems = []
     for name, (_, unit) in found.items():
         usual = _known_units().get(re.sub(r"[0-9]+(?=\.|$)", "", name))
@@ -216,8 +229,12 @@ def _design_table(values, found):
 def _known_units():
     """SI units of the parameters of common machines, by path without the label of the group."""
     loads = Gravity(), Spring(1.0, 0.0), TorsionSpring(1.0, 0.0, on="crank"), TorsionDamper(1.0, on="crank")
-    bars, lever = four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0)), slotted_lever(1.0, pivot=(0.0, -3.0))
-    scenes = Scene(crank_slider(1.0, 3.0), 1.0, loads=loads), Scene(bars, 1.0), Scene(lever, 1.0)
+    machines = (
+        crank_slider(1.0, 3.0),
+        four_bar(1.0, 3.0, 2.5, rocker_pivot=(3.0, 0.0)),
+        slotted_lever(1.0, pivot=(0.0, -3.0)),
+    )
+    scenes = Scene(machines[0], 1.0, loads=loads), *(Scene(machine, 1.0) for machine in machines[1:])
     return {path: unit for scene in scenes for path, unit in scene.units.items()}
 
 

@@ -11,7 +11,7 @@ import sys
 import warnings
 from collections.abc import Iterable
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import closing, suppress
+from contextlib import closing
 from functools import partial
 
 import numpy as np
@@ -66,8 +66,9 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
     if engine == "compiled":
         numba_backend.require_numba()
     is_large = len(designs) * max(angles, MIN_ANGLES_PER_TURN) >= MIN_VALUES_COMPILED
-    compiled_first = engine is None and is_large and numba_backend.numba_available()
-    engines = ["compiled", "numpy"] if compiled_first else [engine or "numpy"]
+    engines = [engine or "numpy"]
+    if engine is None and is_large and numba_backend.numba_available():
+        engines = ["compiled", "numpy"]
     threads = numba_backend.core_count() if executor is None and workers is None else 1
     together = tuple(item for item in wanted if isinstance(item, Output))
     alone = tuple(item for item in wanted if isinstance(item, SolutionNumber))
@@ -81,8 +82,9 @@ def job_of(source, designs, outputs, variant, reference, angles, engine, executo
 def _source_and_reference(source, designs, variant, reference):
     """Source that designs vary, and reference of ratios; an error for arguments of the wrong kind."""
     if not isinstance(designs, pd.DataFrame):
-        found = type(designs).__name__
-        raise ParameterError(f"sweep: designs must be a pandas DataFrame, as from ks.designs, got {found}")
+        raise ParameterError(
+            f"sweep: designs must be a pandas DataFrame, as from ks.designs, got {type(designs).__name__}"
+        )
     if is_case(source):
         return variant_and_reference(source, variant, reference)
     if not (can_vary(source) or callable(source)):
@@ -170,11 +172,12 @@ def _column_problems(designs, wanted):
 
 
 def _signature_problem(function, names):
-    with suppress(ValueError):  # a function without a signature
-        try:
-            inspect.signature(function).bind(**dict.fromkeys(names))
-        except TypeError as error:
-            return f"the function does not accept the columns of the designs: {error}"
+    try:
+        inspect.signature(function).bind(**dict.fromkeys(names))
+    except TypeError as error:
+        return f"the function does not accept the columns of the designs: {error}"
+    except ValueError:  # a function without a signature
+        return None
     return None
 
 

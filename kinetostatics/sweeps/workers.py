@@ -55,7 +55,10 @@ class Workers:
         self._count = self._count and 1
 
     def cancel(self, futures):
-        """Cancel calls of a user's executor; own processes are stopped, as their thread fails at cancelled calls."""
+        """Cancel pending calls of a user's executor.
+
+        Own processes are stopped instead: cancelling their calls would break the thread that serves them.
+        """
         if self._count is None:
             for future in futures:
                 future.cancel()
@@ -72,14 +75,15 @@ class Workers:
         """Number of dead workers behind an error; raises the error if there is none."""
         if type(error).__name__ == "KilledWorker":  # Dask has tried several workers
             return MAX_CHUNK_RUNS
-        broken = isinstance(error, BrokenExecutor)
-        if broken and self._count is None:
+        if _is_lost_result(error):
+            return 1
+        if not isinstance(error, BrokenExecutor):
+            raise error
+        if self._count is None:
             raise KinetostaticsError(
                 f"sweep: the executor broke, because a worker died or could not start ({error}); give workers=n "
                 "instead of executor= for processes that are replaced when they die"
             ) from error
-        if not broken and not _is_lost_result(error):
-            raise error
         return 1
 
     def _submit_once(self, call):
@@ -99,7 +103,10 @@ class Workers:
 
 
 def _is_lost_result(error):
-    """Whether Dask mistook a table for an error because its worker died after sending it."""
+    """Whether Dask's executor mistook a table for an error.
+
+    This happens if the worker dies after its table has arrived but before Dask reads the state of the call.
+    """
     trace = error.__traceback__
     while trace and trace.tb_next:
         trace = trace.tb_next
@@ -117,7 +124,10 @@ class _SameProcess(Executor):
 
 
 def _start_worker(parent):
-    """Let a worker end with its parent, and ignore signals, which would leave the parent waiting for half a result."""
+    """Let a worker ignore signals, which the parent handles, and end with the parent.
+
+    A worker that ended on a signal while sending a result would block the parent, which waits for the rest.
+    """
 
     def exit_with_parent():
         while os.getppid() == parent:
@@ -172,13 +182,17 @@ def run_chunks(job, rows_of, numbers, workers):
 
 
 def _isolate_deaths(job, frame, workers):
-    """Outputs of designs that may kill their worker, by bisection; a single one runs twice, as chance may kill it."""
+    """Outputs of designs that may kill their worker, by bisection down to the faulty designs.
+
+    A single design runs again, as its worker may have died for another reason.
+    """
     alone = len(frame) == 1
     for _ in range(MAX_DESIGN_RUNS if alone else 1):
         for found in workers.result_unless_killed(run_chunk, job, frame):
             return found
     if alone:
-        numbers, reasons = np.full((len(job.items), 1), np.nan), np.array(["the worker died with this design"])
-        return result_table(job, frame, numbers, reasons)
+        return result_table(
+            job, frame, np.full((len(job.items), 1), np.nan), np.array(["the worker died with this design"])
+        )
     halves = np.array_split(np.arange(len(frame)), 2)
     return pd.concat([_isolate_deaths(job, frame.iloc[half], workers) for half in halves])
