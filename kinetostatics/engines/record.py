@@ -2,7 +2,8 @@
 
 Groups, loads, names, absent parts and the assembly mode of a scene form its structure; the recorded arithmetic is valid
 for all scenes of that structure, with any numbers. An output becomes NaN where a group it depends on is open, even if
-no recorded operation links the two. Examples are the weight of the crank, zero moments, and energies of massless groups.
+no recorded operation links the two. The weight of the crank, zero moments, and energies of massless groups are
+examples.
 """
 
 from collections.abc import Callable
