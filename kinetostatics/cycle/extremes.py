@@ -17,6 +17,7 @@ from ..numbers.arithmetic import UNIT_ROUNDOFF
 from ..numbers.lazy import cached_property
 from .limit_positions import MAX_WIDTH, require_single
 from .load_functions import resolution_note, with_resolution
+from .piecewise import signed_peak
 from .rounding import FLOOR, PLACED, BoundedExtremes, extremes_text, without_rounding, zeroed
 from .turning_points import extrema_of, paths
 
@@ -104,8 +105,7 @@ class Extremes:
     @property
     def largest(self):
         """Value of largest magnitude over the turn, with its sign; positive if both signs are as large to rounding."""
-        low, high = self.range
-        return low if -low > (1.0 + 1e-12) * abs(high) else high
+        return signed_peak(*self.range)
 
     def __len__(self):
         return len(self.angle)

@@ -37,6 +37,13 @@ NEWTON_STEPS, NEWTON_TOLERANCE = 5, 1e-9
 """Largest number of Newton steps, and last change of a place in [-1, 1]; a further step would be rounding."""
 CHOPPED = 2e-3
 """Last coefficients below this size, relative to the rounding of values, are 0 in the slope of a series."""
+EQUAL_PEAKS = 1e-12
+"""Relative difference of two peaks that counts as rounding."""
+
+
+def signed_peak(low, high):
+    """The smallest or the largest value, whichever has the larger size; the largest if both are equal to rounding."""
+    return low if -low > (1.0 + EQUAL_PEAKS) * abs(high) else high
 
 
 class Rule(NamedTuple):
@@ -254,7 +261,7 @@ class Pieces:
 
     def peak(self, values):
         """Value of largest size of a function given at the points, with its sign."""
-        return max(self.largest(values)[0], -self.largest(-values)[0], key=abs)
+        return signed_peak(-self.largest(-values)[0], self.largest(values)[0])
 
     def split(self, marked):
         """Pieces, with those in the mask `marked` halved."""

@@ -1,6 +1,7 @@
 """Extremes: where they must lie, that all are found, their table, and what is refused."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -77,6 +78,14 @@ def test_mixed_harmonic_extremes_equal_slope_roots():
     assert len(places) == 6
     assert_allclose(found.angle, places, rtol=0, atol=1e-12)
     assert found.largest == found.value[np.argmax(np.abs(found.value))]
+
+
+@every("rounding", [-1e-15, 0.0, 1e-15])
+def test_peaks_of_equal_size_have_one_sign(rounding):
+    found = ks.extremes(ks.solve(ks.crank_slider(0.3, 2.0, slider=ks.Link(600)), 0.0, crank_speed=33.5), "O")
+    equal = replace(found, value=np.array([-2.0, 2.0 * (1.0 + rounding)]))
+    assert equal.largest == equal.value[1]
+    assert replace(found, value=np.array([-2.0, 1.9])).largest == -2.0
 
 
 def test_extremes_are_in_order_of_angle_and_alternate():

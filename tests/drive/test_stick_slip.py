@@ -56,6 +56,23 @@ def test_pendulum_with_friction_slows_and_sticks():
     assert np.abs(torque).max() < 1e-13
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_only_whole_periods_serve_the_next_ones(monkeypatch, way):
+    """A motion begins within its first period, between crank angle 0 and a kink of friction."""
+    kept, keep = [], resolution.PastPeriods.keep
+
+    def seen(self, *solved):
+        keep(self, *solved)
+        kept.extend((part.edges[0], part.edges[-1]) for part, *_ in self.past)
+
+    monkeypatch.setattr(resolution.PastPeriods, "keep", seen)
+    saw = shipped("sawframe_2r63_friction").variants["cam-circle"].scene
+    ks.drive.coast(saw, 1000.0, 0.4 * way, 33.5 * way, 2.0)
+    assert kept
+    np.testing.assert_allclose(kept, [(0.0, 2.0 * math.pi)] * len(kept), atol=1e-9)
+
+
 def test_what_sticks_does_not_move():
     motion = ks.drive.coast(PENDULUM, 0.06, -math.pi / 2 + 0.01, 0.0, 5.0)
     assert [event.name for event in motion.events] == ["start", "standstill"]
