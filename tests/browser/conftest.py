@@ -11,6 +11,9 @@ import pytest
 TOOLS = ("chromium", "chromedriver")
 """A browser and what drives it, as Debian's packages of these names install them."""
 
+QUIET = ("--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run")
+"""The browser asks nobody for news of its own."""
+
 
 def missing():
     """What is lacking to run a browser, as a sentence, or ""."""
@@ -31,7 +34,7 @@ def driver(request):
     from selenium import webdriver
 
     options = webdriver.ChromeOptions()
-    for word in ("--headless=new", "--disable-dev-shm-usage", "--hide-scrollbars", "--window-size=1240,1000"):
+    for word in (*QUIET, "--headless=new", "--disable-dev-shm-usage", "--hide-scrollbars", "--window-size=1240,1000"):
         options.add_argument(word)
     if hasattr(os, "geteuid") and os.geteuid() == 0:
         options.add_argument("--no-sandbox")

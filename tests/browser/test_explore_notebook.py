@@ -27,6 +27,8 @@ pytestmark = [
 TOKEN = "token-of-this-test"
 PATIENCE = 90.0
 """Seconds in which the kernel starts and answers on a machine that is busy with other tests."""
+SOON = 15.0
+"""Seconds in which a cell begins to run after its keys were pressed."""
 CELLS = {
     "show": "import kinetostatics as ks\nw = ks.explore('sawframe_2r63', variant='cam-circle')\nw",
     "print": "import json\nprint('shown:', json.dumps([w.scene.parameters['slider.mass'], w.state]))",
@@ -53,20 +55,32 @@ class Notebook:
         self.driver = driver
         unready = (WebDriverException, IndexError)  # JupyterLab places cells one after another
         self.wait = WebDriverWait(driver, PATIENCE, poll_frequency=0.1, ignored_exceptions=unready)
+        self.soon = WebDriverWait(driver, SOON, poll_frequency=0.1, ignored_exceptions=unready)
 
     def cell(self, name):
         """A cell."""
         return self.driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook .jp-CodeCell")[list(CELLS).index(name)]
 
     def run(self, name):
-        """Run a cell, as a person does."""
-        self.wait.until(lambda _: self.choose(self.cell(name)))
-        ActionChains(self.driver).key_down(Keys.SHIFT).send_keys(Keys.ENTER).key_up(Keys.SHIFT).perform()
+        """Run a cell, as a person does: the keys are pressed again when the cell does not begin."""
+        self.wait.until(lambda _: self.idle())
+        before = self.prompt(name)
+        self.wait.until(lambda _: self.press(name) and self.soon.until(lambda _: self.prompt(name) != before))
 
-    def choose(self, cell):
-        """Put the caret into a cell."""
+    def idle(self):
+        """Whether the kernel has started and ended its work."""
+        return self.driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook-ExecutionIndicator[data-status=idle]")
+
+    def prompt(self, name):
+        """Number of a cell's last run, a star while it runs."""
+        return self.cell(name).find_element(By.CSS_SELECTOR, ".jp-InputPrompt").text
+
+    def press(self, name):
+        """Put the caret into a cell and press the keys that run it."""
+        cell = self.cell(name)
         self.driver.execute_script("arguments[0].scrollIntoView({block: 'start'})", cell)
         cell.find_element(By.CSS_SELECTOR, ".cm-content").click()
+        ActionChains(self.driver).key_down(Keys.SHIFT).send_keys(Keys.ENTER).key_up(Keys.SHIFT).perform()
         return True
 
     def page(self, name):
