@@ -42,7 +42,7 @@ def driver(request):
     logs = getattr(request.module, "LOGS", ("browser", "performance"))
     options.set_capability("goog:loggingPrefs", dict.fromkeys(logs, "ALL"))
     found = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which(TOOLS[1])))
-    found.set_script_timeout(30)
+    found.set_script_timeout(60)
     yield found
     found.quit()
 

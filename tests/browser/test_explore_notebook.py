@@ -64,7 +64,7 @@ class Notebook:
     def run(self, name):
         """Run a cell, as a person does: the keys are pressed again when the cell does not begin."""
         self.wait.until(lambda _: self.idle())
-        before = self.prompt(name)
+        before = self.wait.until(lambda _: self.prompt(name))
         self.wait.until(lambda _: self.press(name) and self.soon.until(lambda _: self.prompt(name) != before))
 
     def idle(self):
@@ -72,7 +72,7 @@ class Notebook:
         return self.driver.find_elements(By.CSS_SELECTOR, ".jp-Notebook-ExecutionIndicator[data-status=idle]")
 
     def prompt(self, name):
-        """Number of a cell's last run, a star while it runs."""
+        """Number of a cell's last run, a star while it runs; "" before JupyterLab has drawn the cell."""
         return self.cell(name).find_element(By.CSS_SELECTOR, ".jp-InputPrompt").text
 
     def press(self, name):

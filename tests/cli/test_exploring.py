@@ -69,7 +69,7 @@ def exploring(*options):
 def test_signals_end_it_quietly(number, status, word):
     with exploring("pumpjack") as (process, _):
         process.send_signal(getattr(signal, number))
-        assert process.communicate(timeout=30) == ("", f"kinetostatics: {word}\n")
+        assert process.communicate(timeout=60) == ("", f"kinetostatics: {word}\n")
     assert process.returncode == status
 
 

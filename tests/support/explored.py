@@ -13,7 +13,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
-READY = 20.0
+READY = 60.0
 """Seconds in which a server and its page must be ready on a busy machine; alone they take under three."""
 
 
