@@ -13,7 +13,7 @@ from kinetostatics.mechanics.assembly import HALF_DIGITS_CONDITION, NO_DIGITS_CO
 from kinetostatics.mechanics.quantities import components
 from kinetostatics.numbers.arithmetic import UNIT_ROUNDOFF
 from support.bounded import FAMILIES, solution
-from support.case_files import shipped
+from support.case_files import shipped, unlike_variants
 from support.every import every
 
 LOOSE = 1000.0
@@ -67,7 +67,7 @@ def without_bound(made):
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("family", FAMILIES)
-@every("seed", (1000, 1001))
+@every("seed", (1000,))
 def test_bounds_exist_unless_half_the_digits_are_lost(family, seed):
     made = solution(family, seed)
     for condition in without_bound(made) if made is not None else ():
@@ -78,8 +78,8 @@ def test_bounds_exist_unless_half_the_digits_are_lost(family, seed):
 @pytest.mark.filterwarnings("ignore::kinetostatics.ConditionWarning")
 @every("case", ks.shipped_cases())
 def test_condition_claims_no_unproven_digits(case):
-    for variant in shipped(case).variants.values():
-        made = variant.scene.solve(np.linspace(0.01, 6.27, 40), on_gap="nan")
+    for variant in unlike_variants(case):
+        made = shipped(case).variants[variant].scene.solve(np.linspace(0.01, 6.27, 40), on_gap="nan")
         for quantity, bound, condition in looked_at(made):
             assert np.all(bound <= LOOSE * UNIT_ROUNDOFF * condition), quantity
         assert all(np.all(condition > HALF_DIGITS_CONDITION) for condition in without_bound(made))

@@ -235,8 +235,8 @@ def test_memory_stays_flat(session):
     usual = gc.get_threshold()
     gc.set_threshold(700, 10, 10)  # as in a process without tests
     try:
-        before = change(500)
-        assert change(1000) - before < LEAK * 1000
+        before = change(300)
+        assert change(500) - before < LEAK * 500
     finally:
         gc.set_threshold(*usual)
 
