@@ -18,7 +18,7 @@ from ..numbers.lazy import cached_property
 POINTS = 24
 """Points of a piece."""
 POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
-"""Limits of the number of edges, and the number of points of a piece above each."""
+"""Pairs (limit, points): with more edges than the limit, each piece has this number of points."""
 TAIL_TERMS = 3
 """Number of last coefficients of a series that estimate its error."""
 TAIL = 2e-14
@@ -30,13 +30,13 @@ MAX_UNRESOLVED = 100
 DENSE = 8
 """Number of places per point of a series in the search for extremes."""
 MIN_WIDTH = 1e-13
-"""Width of a piece, relative to the period, below which it is not split: it contains a jump."""
+"""Smallest width of a piece that is halved, relative to the period; a narrower rough piece contains a jump."""
 JUMP_OFFSET = 2.0**-44
 """Distance from a jump of the crank angles on its two sides, rad."""
 NEWTON_STEPS, NEWTON_TOLERANCE = 5, 1e-9
-"""Largest number of Newton steps, and last change of a place in [-1, 1]; a further step would be rounding."""
+"""Largest number of Newton steps, and change of a place in [-1, 1] below which a further step changes only rounding."""
 CHOPPED = 2e-3
-"""Last coefficients below this size, relative to the rounding of values, are 0 in the slope of a series."""
+"""Last coefficients below this share of the rounding of the values are set to 0 before a series is differentiated."""
 EQUAL_PEAKS = 1e-12
 """Relative difference of two peaks that counts as rounding."""
 
@@ -47,11 +47,11 @@ def signed_peak(low, high):
 
 
 class Rule(NamedTuple):
-    """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
+    """Chebyshev points in [-1, 1], weights of the integral over it, dense places, and matrices.
 
-    From a series, `vander` goes to values at the points, and `many` to values at the dense places. `derived` goes to
-    the series of slopes, and `risen` to the series of integrals from -1. `check` goes from values at the points to the
-    last coefficients, and to values and slopes at both ends.
+    `series` turns values at the points into Chebyshev coefficients, and `integral` into integrals from -1 to each
+    point. `check` turns them into the last coefficients, and values and slopes at both ends. Coefficients become values
+    at the points by `vander`, at the places by `many`; `derived` differentiates, `risen` integrates from -1.
     """
 
     points: np.ndarray
@@ -68,6 +68,7 @@ class Rule(NamedTuple):
 
 @lru_cache
 def rule(count) -> Rule:
+    """The `Rule` of a number of points, computed once."""
     points = chebyshev.chebpts1(count)
     vander = chebyshev.chebvander(points, count - 1)
     series = vander.T * (np.where(np.arange(count) == 0, 1.0, 2.0) / count)[:, None]
@@ -91,8 +92,7 @@ def _weights(count):
 class Pieces:
     """Pieces of a period between edges, each with `count` points, of one design or of several.
 
-    Values are (..., pieces, points). Edges rise from the start to the end of the period; those of several designs
-    follow one another.
+    Values are (..., pieces, points). Edges rise over the period; for the next design they begin at its start again.
     """
 
     edges: np.ndarray
@@ -155,7 +155,7 @@ class Pieces:
         return self.middle[piece] + self.half[piece, 0] * place
 
     def some(self, designs):
-        """Pieces of the designs in a mask, and the mask of these pieces."""
+        """Pieces of the designs in a mask, and the mask of these among all pieces."""
         own = np.append(np.cumsum(~self._inside, dtype=int) - ~self._inside, self.owner[-1])  # design of each edge
         return Pieces(self.edges[designs[own]], self.count), designs[self.owner]
 
@@ -176,14 +176,14 @@ class Pieces:
         return self.half[:, 0] * product(values, rule(self.count).weights[None])[..., 0]
 
     def before(self, parts):
-        """Sum over the earlier pieces of the same design."""
+        """For each piece: the sum of `parts` over the earlier pieces of its design."""
         number = np.arange(len(parts)) - self.firsts[self.owner]
         rows = np.zeros((self.firsts.size, number.max() + 2))
         rows[self.owner, number + 1] = parts
         return rows.cumsum(axis=1)[self.owner, number]
 
     def integrated(self, values):
-        """Integral from the first edge to each point."""
+        """Integral from the start of the period to each point."""
         return self.integral(values) + self.before(self.whole(values))[:, None]
 
     def total(self, values):
@@ -195,7 +195,7 @@ class Pieces:
         return product(values, rule(self.count).series).T
 
     def smoothed(self, values):
-        """Values without the upper half of the coefficients, which is noise of values that are difference quotients."""
+        """Values without the upper half of the coefficients, which is noise where values are difference quotients."""
         count = self.count // 2
         return (rule(self.count).vander[:, :count] @ self.series(values)[:count]).T
 
@@ -210,7 +210,7 @@ class Pieces:
         return np.abs(product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
 
     def tail(self, values):
-        """The same relative to the largest value of all."""
+        """Size of the last coefficients of each piece, relative to the largest value of all pieces."""
         size = np.abs(values).max()
         return self.tails(values) / size if size else np.zeros(len(values))
 
@@ -275,11 +275,11 @@ class Pieces:
 
     @property
     def checked(self):
-        """Crank angles (pieces, points + 2) of all points, and beside both ends, where series are checked."""
+        """Crank angles (pieces, points + 2) at which series are checked: just inside both ends, and at all points."""
         return np.column_stack([self.low + JUMP_OFFSET, self.angle, self.high - JUMP_OFFSET])
 
     def resolved(self, values, evaluate, rough):
-        """Halve pieces until series of functions are accurate; return them, their values, and a mask of rough pieces.
+        """Halve pieces until series are accurate; return pieces, their values, and a mask of those still to be halved.
 
         Parameters
         ----------
@@ -323,7 +323,7 @@ class Pieces:
         angle, piece : array (K,)
         starts : array (pieces,) of bool
             Whether it turns at the start of a piece, or is constant in this piece or the one before. The last piece
-            is before the first.
+            precedes the first.
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
         large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
@@ -350,7 +350,8 @@ class Pieces:
     def _roots(self, dense, slope, asked, function, series):
         """Places and pieces of the roots of functions given at the dense places (places, pieces), by Newton.
 
-        `function` returns value and slope from the values of all series; it also finds two roots between dense places.
+        `function` turns the values of all series into value and slope. Where the slope changes its sign, two roots
+        between neighbouring dense places are found too.
         """
         places = rule(self.count).places
 
@@ -386,7 +387,7 @@ class Pieces:
 
 
 def product(values, matrix):
-    """Values (..., N) times a matrix (M, N); by BLAS a row would depend on its neighbours."""
+    """Values (..., N) times a matrix (M, N); by BLAS the rounding of a row would depend on other rows."""
     return np.einsum("...n,mn->...m", values, matrix)
 
 
@@ -396,7 +397,7 @@ def rolled(values, step):
 
 
 def highest(height, group):
-    """Index of the highest of each group."""
+    """Index of the highest value in each group of values."""
     order = np.lexsort((height, group))
     return order[np.flatnonzero(np.diff(group[order], append=np.max(group, initial=0) + 1))]
 
