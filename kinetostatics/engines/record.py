@@ -72,7 +72,7 @@ class Gaps:
 
 
 WITHOUT_GAPS = ("closure", *FRICTION_CHECKS)
-"""Quantities that report gaps themselves, and so remain numbers there."""
+"""Quantities that report where a group is open, and so have values there."""
 
 
 class Table(NamedTuple):
@@ -98,9 +98,9 @@ class Table(NamedTuple):
 class Recording:
     """The arithmetic of some quantities for all scenes of one structure.
 
-    `outputs` are nodes or numbers, components of a vector one after the other. `widths` are the rows of each quantity:
-    1 for a scalar, 2 for a vector, one per group for the closure. `parameters` has a node for each number of a scene,
-    in the order of its leaves; `inputs` are those of `ErrorBounds`.
+    `outputs` are nodes or numbers, components of a vector one after the other. `widths` are the numbers of rows of the
+    quantities: 1 for a scalar, 2 for a vector, one per group for the closure. `parameters` has a node for each number
+    of a scene, in the order of its leaves. `inputs` give the errors of inexact nodes, see `ErrorBounds`.
     """
 
     quantities: tuple[str, ...]
@@ -167,7 +167,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 
 class Recorder:
-    """Replaces the numbers of a structure by nodes of a graph, by default a new plain `Graph`."""
+    """Replaces the numbers of a structure by nodes of a graph: a new plain `Graph` unless one is given."""
 
     def __init__(self, structure, way=None, graph=None):
         self.graph = Graph() if graph is None else graph
@@ -214,7 +214,7 @@ class Recorder:
         return list(map(_nodes, found))
 
     def _with_cam(self, group, place):
-        """The group, with its cam's values from a table if the cam takes plain numbers only."""
+        """The group; its cam's values are from a table if the cam's code does not run on recorded numbers."""
         if not hasattr(group, "cam") or self._is_elementwise(
             group.cam, lambda angle: group.cam.polar(angle, ray(angle))
         ):
@@ -229,7 +229,7 @@ class Recorder:
         return group
 
     def _load(self, load, place, idle):
-        """The load, with its values from a table if it takes plain numbers only."""
+        """The load; its values are from a table if its code does not run on recorded numbers."""
         if getattr(load, "STROKE", False):
             load = replace_unchecked(load, ends=self._stroke(load, place, idle))
         if not isinstance(load, Load):
@@ -249,8 +249,7 @@ class Recorder:
         """Coordinates of the dead centres of a load's slider, at their crank angles from a table.
 
         The angles count as constants: the coordinate has an extremum there, so an error of the angle does not change
-        it to first order, and derivatives are exact.
-        For a cam from a table the coordinates come from a table themselves.
+        it to first order, and derivatives are exact. For a cam from a table the coordinates come from a table too.
         """
         mechanism, is_tabled = idle.mechanism, _has_tabled_cam(idle.mechanism)
         rows = self._tabled(
@@ -287,7 +286,7 @@ class Recorder:
         return values
 
     def _read(self, table, unit, place, idle):
-        """Values of a table over the crank angle; of another, a function of the motion by a piece found beforehand."""
+        """Values of a table over the crank angle; for others, a function of the motion on a piece chosen before."""
 
         def item(motion):
             return motion.loads[place].value_now
@@ -362,7 +361,10 @@ def _has_tabled_cam(mechanism):
 
 
 def _error_of_piece(bounds, kinks, travel, rate, own=None):
-    """Error of a value of a table: the exact place may be in the next piece, or on the other stroke; `own` is added."""
+    """Error of a table's value, as the exact place may be in another piece or stroke, plus its rounding `own`.
+
+    `kinks` are the results of `table_pieces.kink_bounds`.
+    """
     change, jump, near, distance = kinks
     bounds.look_at((travel, rate))
     jumps = plus(plus(jump / UNIT_ROUNDOFF, own), 0.0 / bounds.above(near, bounds.total(rate)))
