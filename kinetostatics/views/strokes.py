@@ -73,7 +73,7 @@ def hatched_line(start, end, width):
 THIN_RATIO = 1e-3
 """Width of a link, relative to its length, up to which it is a straight bar."""
 FAR_RATIO = 3.0
-"""Length of a spring, over the extent of the machine, above which only a part beside the machine is drawn."""
+"""A load's line longer than this, relative to the extent of the machine, is drawn only near the machine."""
 PRESSED = 1e-9
 """Contact force, relative to the largest, above which a side of a cam carries force."""
 SURFACE_POINTS = 360
@@ -111,7 +111,7 @@ def _placed(kind, shape, origin, direction, size=1.0, sense=1.0):
 
 @dataclass(frozen=True)
 class Shape:
-    """Sizes and outlines of a drawing, the same in all poses, from the motion over whole turns."""
+    """Sizes and outlines of a drawing, the same in all poses; `turn` is the motion over whole turns."""
 
     turn: Any
 
@@ -136,7 +136,7 @@ class Shape:
 
     @cached_property
     def slots(self):
-        """Slots with both ends of the joint's travel, (2, 2), in the axes of the link, the nearer end first."""
+        """Slots with both ends of the joint's travel, (2, 2), in the link's axes, the end nearer the origin first."""
         found = []
         for slot in self.mechanism.slots:
             link = self.turn.placement.links[slot.link]
@@ -219,7 +219,7 @@ class Shape:
             yield _ring("roller", pose.position(joint), size)
 
     def _piston(self, pose, slot, ends):
-        """Cylinder from the reference joint to the nearer end of the travel, and a rod in it."""
+        """Cylinder from its reference joint to the nearer end of the travel, and a rod in it."""
         near, far = np.hypot(*ends)
         origin, joint = pose.position(self.mechanism.references[slot.link]), pose.position(slot.joint)
         axis = (joint - origin) / np.hypot(*(joint - origin))
@@ -232,7 +232,7 @@ class Shape:
     def counterweights(self, pose):
         """Counterweights of turning links whose mass centres lie beyond their joints.
 
-        A sector about the reference joint for a mass centre behind it, else a disk at the end of the extended link.
+        A mass centre behind the reference joint has a sector about that joint, one beyond the last joint a disk.
         """
         for name, link in self.mechanism.links.items():
             along, across = (float(np.ravel(part)[0]) for part in link.centre)
@@ -388,9 +388,9 @@ def _nearest_on(outline, point):
 
 
 def working_curves(solution):
-    """Working curves of cams whose roller has a known radius: the cam's body, and points (2, K) in its axes.
+    """Working curves of cams whose roller has a known radius: the cam's body, and points (2, K) in the body's axes.
 
-    A curve for each side on which the roller is pressed: outside a disk, inside a ring.
+    Each side that carries force has a curve: the outside of a disk, the inside of a ring.
     """
     for group in solution.mechanism.groups:
         for led in group.led:
@@ -425,7 +425,7 @@ def whole_turn(solution):
 
 
 def at_angles(solution, degrees):
-    """Motion of the mechanism at other crank angles, degrees, without loads; the crank speed is 1, -1 or 0."""
+    """Motion at other crank angles, degrees, without loads; the speed is the solution's sign, 0 if it has several."""
     ways = np.unique(np.sign(solution.crank_speed))
     return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
 
@@ -445,12 +445,12 @@ def moves_alike(solution, other):
 
 
 def load_strokes(solution, angle):
-    """Signs of the loads of a machine in a pose, as strokes."""
+    """Symbols of the loads of a machine in a pose, as strokes."""
     return list(Shape(whole_turn(solution)).signs(solution.loads, at_angles(solution, angle)))
 
 
 def strokes_by_owner(named, angle):
-    """Counterweights and signs of loads in a pose, each with the labels of its machines."""
+    """Counterweights and symbols of loads in a pose, each with the labels of its machines."""
     found = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))
