@@ -154,7 +154,7 @@ class Pieces:
         """Crank angles at places from -1 to 1 of pieces."""
         return self.middle[piece] + self.half[piece, 0] * place
 
-    def some(self, designs):
+    def of_designs(self, designs):
         """Pieces of the designs in a mask, and the mask of these among all pieces."""
         own = np.append(np.cumsum(~self._inside, dtype=int) - ~self._inside, self.owner[-1])  # design of each edge
         return Pieces(self.edges[designs[own]], self.count), designs[self.owner]

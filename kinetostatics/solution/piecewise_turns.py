@@ -90,7 +90,7 @@ class PiecewiseTurns(NamedTuple):
         step = max(1, BLOCK_VALUES * self.designs // self.pieces.checked.size)
         for start in range(0, self.designs, step):
             some = np.arange(start, min(start + step, self.designs))
-            pieces, _ = self.pieces.some(np.isin(np.arange(self.designs), some))
+            pieces, _ = self.pieces.of_designs(np.isin(np.arange(self.designs), some))
 
             def evaluated(angle, designs, start=start):
                 return self.values(list(vectors), start + designs, angle)
