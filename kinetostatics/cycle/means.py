@@ -180,7 +180,7 @@ def means(function, turn, floor):
     def evaluate(angle, _=None):
         return function(angle.ravel()).reshape(-1, *angle.shape)
 
-    first = evaluate(turn.pieces.checked)
+    first = evaluate(turn.pieces.check_angles)
     profile = np.fmin(turn.condition, MAX_CONDITION) * (turn.limits.size > 0)
     noise = np.abs(first).max(axis=(1, 2))[:, None] * UNIT_ROUNDOFF
 

@@ -274,7 +274,7 @@ class Pieces:
         return 2.0 * self.half[:, 0] > MIN_WIDTH * self.period
 
     @property
-    def checked(self):
+    def check_angles(self):
         """Crank angles (pieces, points + 2) at which series are checked: just inside both ends, and at all points."""
         return np.column_stack([self.low + JUMP_OFFSET, self.angle, self.high - JUMP_OFFSET])
 
@@ -284,7 +284,7 @@ class Pieces:
         Parameters
         ----------
         values : array (functions, pieces, points + 2)
-            At the angles `checked`.
+            At the angles `check_angles`.
         evaluate : function
             From crank angles (P, points + 2) and the designs (P,) of these pieces to values.
         rough : function
@@ -300,7 +300,7 @@ class Pieces:
             parts = 1 + marked
             new, pieces = np.repeat(marked, parts), pieces.split(marked)
             values, errors = np.repeat(values, parts, axis=1), np.repeat(errors, parts, axis=1)
-            values[:, new] = evaluate(pieces.checked[new], pieces.owner[new])
+            values[:, new] = evaluate(pieces.check_angles[new], pieces.owner[new])
             errors[:, new] = _errors(values[:, new], pieces.half[new], self.count)
         return pieces, values, rough_ones
 
