@@ -308,14 +308,14 @@ class Pieces:
         """Estimate of the error of each series: last coefficients, and misfit at both ends, (..., pieces)."""
         return _errors(values, self.half, self.count)
 
-    def turning(self, values, level):
+    def turning(self, values, rounding):
         """Crank angles inside pieces at which a function turns, and whether it turns at the start of each piece.
 
         Parameters
         ----------
         values : array (1 or 2, pieces, points)
             A function, or the components of a vector, whose magnitude turns.
-        level : array (pieces,)
+        rounding : array (pieces,)
             Range of values that counts as rounding.
 
         Returns
@@ -326,13 +326,13 @@ class Pieces:
             precedes the first.
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
-        large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
+        large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * rounding
         series = [np.where(large, series, 0.0)]
         series += [rule(self.count).derived @ series[0]]
         series += [rule(self.count).derived @ series[1]]
         slopes = _slope_of_size if len(values) == 2 else _slope
         slope, bend = slopes(*(rule(self.count).many @ rows for rows in series))
-        moves = (np.ptp(values, axis=2) > level).any(axis=0)
+        moves = (np.ptp(values, axis=2) > rounding).any(axis=0)
         place, piece = self._roots(slope, bend, moves, slopes, series)
         rises = np.where(moves, np.sign(slope[[0, -1]]), 0.0)
         return self.angle_at(piece, place), piece, rolled(rises[1], 1) * rises[0] <= 0.0
