@@ -223,7 +223,7 @@ class Pieces:
 
     def weights_at(self, place):
         """Weights (K, points) of the values at the points of a piece, for interpolation at places from -1 to 1."""
-        return waves(self.count, place).T @ rule(self.count).series
+        return chebyshev_values(self.count, place).T @ rule(self.count).series
 
     def weights_up_to(self, place):
         """Weights for the integrals from -1 to places."""
@@ -238,7 +238,7 @@ class Pieces:
             np.append(np.repeat([-1.0, 1.0], len(pieces)), place),
             np.append(np.tile(np.arange(len(pieces)), 2), own),
         )
-        return np.einsum("np,np->p", series[:, own], waves(self.count, place)), pieces[own], place
+        return np.einsum("np,np->p", series[:, own], chebyshev_values(self.count, place)), pieces[own], place
 
     def peaks(self, values):
         """Highest value of each design, its piece, and its place there, each (designs,); NaN if a value is NaN.
@@ -356,7 +356,7 @@ class Pieces:
         places = rule(self.count).places
 
         def evaluate(piece, place):
-            own = waves(self.count, place)
+            own = chebyshev_values(self.count, place)
             return function(*(np.einsum("ckn,kn->cn", rows[:, :, piece], own) for rows in series))
 
         changes = np.signbit(dense[:-1]) != np.signbit(dense[1:])
@@ -402,7 +402,7 @@ def highest(height, group):
     return order[np.flatnonzero(np.diff(group[order], append=np.max(group, initial=0) + 1))]
 
 
-def waves(count, place):
+def chebyshev_values(count, place):
     """Values (count, K) of the Chebyshev polynomials at places in [-1, 1]; those outside by rounding are clipped."""
     return np.cos(np.arange(count)[:, None] * np.arccos(np.clip(place, -1.0, 1.0)))
 
