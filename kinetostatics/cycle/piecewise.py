@@ -169,11 +169,11 @@ class Pieces:
 
     def integral(self, values):
         """Integral from the start of its piece to each point."""
-        return self.half * product(values, rule(self.count).integral)
+        return self.half * matrix_product(values, rule(self.count).integral)
 
     def whole(self, values):
         """Integral over each piece."""
-        return self.half[:, 0] * product(values, rule(self.count).weights[None])[..., 0]
+        return self.half[:, 0] * matrix_product(values, rule(self.count).weights[None])[..., 0]
 
     def before(self, parts):
         """For each piece: the sum of `parts` over the earlier pieces of its design."""
@@ -192,7 +192,7 @@ class Pieces:
 
     def series(self, values):
         """Chebyshev coefficients (points, pieces)."""
-        return product(values, rule(self.count).series).T
+        return matrix_product(values, rule(self.count).series).T
 
     def smoothed(self, values):
         """Values without the upper half of the coefficients, which is noise where values are difference quotients."""
@@ -207,7 +207,7 @@ class Pieces:
 
     def tails(self, values):
         """Size of the last coefficients of each piece, (..., pieces)."""
-        return np.abs(product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
+        return np.abs(matrix_product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
 
     def tail(self, values):
         """Size of the last coefficients of each piece, relative to the largest value of all pieces."""
@@ -228,12 +228,12 @@ class Pieces:
     def weights_up_to(self, place):
         """Weights for the integrals from -1 to places."""
         own = rule(self.count)
-        return product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
+        return matrix_product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
 
     def summits(self, values, pieces):
         """Heights, pieces and places of the turning points and both ends of some pieces."""
         series = self.series(values[pieces])
-        place, own = self._zeros(product(series.T, rule(self.count).derived).T)
+        place, own = self._zeros(matrix_product(series.T, rule(self.count).derived).T)
         place, own = (
             np.append(np.repeat([-1.0, 1.0], len(pieces)), place),
             np.append(np.tile(np.arange(len(pieces)), 2), own),
@@ -342,8 +342,8 @@ class Pieces:
         return self._zeros(self.series(values))
 
     def _zeros(self, series):
-        series = [series[None], product(series.T, rule(self.count).derived).T[None]]
-        value, slope = (product(rows[0].T, rule(self.count).many).T for rows in series)
+        series = [series[None], matrix_product(series.T, rule(self.count).derived).T[None]]
+        value, slope = (matrix_product(rows[0].T, rule(self.count).many).T for rows in series)
         everywhere = np.ones(value.shape[1], bool)
         return self._roots(value, slope, everywhere, lambda *parts: [part[0] for part in parts], series)
 
@@ -386,7 +386,7 @@ class Pieces:
         return place, piece
 
 
-def product(values, matrix):
+def matrix_product(values, matrix):
     """Values (..., N) times a matrix (M, N); by BLAS the rounding of a row would depend on other rows."""
     return np.einsum("...n,mn->...m", values, matrix)
 
@@ -408,7 +408,7 @@ def chebyshev_values(count, place):
 
 
 def _errors(values, half, count):
-    found = product(values[..., 1:-1], rule(count).check)
+    found = matrix_product(values[..., 1:-1], rule(count).check)
     shift = JUMP_OFFSET / half * [1.0, -1.0]
     misfit = found[..., TAIL_TERMS:-2] + shift * found[..., -2:] - values[..., [0, -1]]
     return np.fmax(np.abs(found[..., :TAIL_TERMS]).max(axis=-1), np.abs(misfit).max(axis=-1))
