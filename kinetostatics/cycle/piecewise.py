@@ -293,8 +293,8 @@ class Pieces:
         pieces, errors = self, self.errors(values)
         most = self.sums(np.ones(len(self.half), int)) + MAX_UNRESOLVED * self.period / TURN
         for _ in range(MAX_HALVINGS):
-            rough_ones = rough(pieces, errors, values) & pieces.can_split
-            marked = rough_ones & (pieces.sums(rough_ones.astype(int)) <= most)[pieces.owner]
+            unresolved = rough(pieces, errors, values) & pieces.can_split
+            marked = unresolved & (pieces.sums(unresolved.astype(int)) <= most)[pieces.owner]
             if not marked.any():
                 break
             parts = 1 + marked
@@ -302,7 +302,7 @@ class Pieces:
             values, errors = np.repeat(values, parts, axis=1), np.repeat(errors, parts, axis=1)
             values[:, new] = evaluate(pieces.check_angles[new], pieces.owner[new])
             errors[:, new] = _errors(values[:, new], pieces.half[new], self.count)
-        return pieces, values, rough_ones
+        return pieces, values, unresolved
 
     def errors(self, values):
         """Estimate of the error of each series: last coefficients, and misfit at both ends, (..., pieces)."""
