@@ -167,11 +167,11 @@ class Pieces:
         """Largest of the pieces of each design, (..., designs)."""
         return np.maximum.reduceat(parts, self.firsts, axis=-1)
 
-    def integral(self, values):
+    def integral_in_piece(self, values):
         """Integral from the start of its piece to each point."""
         return self.half * matrix_product(values, rule(self.count).integral)
 
-    def whole(self, values):
+    def piece_integrals(self, values):
         """Integral over each piece."""
         return self.half[:, 0] * matrix_product(values, rule(self.count).weights[None])[..., 0]
 
@@ -182,13 +182,13 @@ class Pieces:
         rows[self.owner, number + 1] = parts
         return rows.cumsum(axis=1)[self.owner, number]
 
-    def integrated(self, values):
+    def integral_from_start(self, values):
         """Integral from the start of the period to each point."""
-        return self.integral(values) + self.before(self.whole(values))[:, None]
+        return self.integral_in_piece(values) + self.before(self.piece_integrals(values))[:, None]
 
-    def total(self, values):
+    def whole_integral(self, values):
         """Integral over all pieces."""
-        return float(self.whole(values).sum())
+        return float(self.piece_integrals(values).sum())
 
     def series(self, values):
         """Chebyshev coefficients (points, pieces)."""

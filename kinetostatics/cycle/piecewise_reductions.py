@@ -62,8 +62,8 @@ def _weights_of_magnitudes(pieces, values):
 
 def gained(pieces, values):
     """Integral at each point of values less their mean over the period, from the start of the period."""
-    mean = pieces.sums(pieces.whole(values)) / pieces.period
-    return pieces.integrated(values - mean[pieces.owner, None])
+    mean = pieces.sums(pieces.piece_integrals(values)) / pieces.period
+    return pieces.integral_from_start(values - mean[pieces.owner, None])
 
 
 def _peaks(pieces, reduction, values, vector):

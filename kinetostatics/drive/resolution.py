@@ -128,7 +128,7 @@ def weights(pieces):
 
 def _require_resolved(driven, pieces, torque):
     """Refuse a load torque that the pieces do not resolve: it grows without bound."""
-    size = np.abs(pieces.whole(np.abs(torque)))
+    size = np.abs(pieces.piece_integrals(np.abs(torque)))
     lost = pieces.half[:, 0] * pieces.tails(torque)
     if lost.sum() > MAX_UNRESOLVED * size.sum():
         worst = int(np.argmax(lost))
