@@ -131,7 +131,7 @@ class Recording:
         return operations(self.outputs)
 
     @property
-    def rows(self):
+    def row_count(self):
         """Number of rows of the tables that the outputs need."""
         return max((node.arguments[0] + 1 for node in needed(self.outputs) if node.operation == "table"), default=0)
 
