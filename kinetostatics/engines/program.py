@@ -78,7 +78,7 @@ class Program:
     def unrecorded(self):
         """Names of the user's code that outputs depend on and that could not be recorded."""
         tables = (table for table in self.recording.tables if not self._rows_needed.isdisjoint(table.rows))
-        return tuple(table.moved_by for table in tables if table.moved_by)
+        return tuple(table.user_code for table in tables if table.user_code)
 
     @cached_property
     def _plain(self):

@@ -79,13 +79,13 @@ class Table(NamedTuple):
     """Rows of values that ``compute(motion, leaves)`` gives at the crank angles before the program runs.
 
     `rows` are the row indices, `names` the name, the order of derivative by the crank angle and the unit of each.
-    `moved_by` names user code whose derivatives by the parameters are unknown; "" if there is none. `of` is the cam,
+    `user_code` names user code whose derivatives by the parameters are unknown; "" if there is none. `of` is the cam,
     or the index of the load, that uses them.
     """
 
     rows: range
     compute: Callable[[Any, Any], Any]
-    moved_by: str = ""
+    user_code: str = ""
     names: tuple = ()
     of: str | int = ""
 
@@ -196,20 +196,20 @@ class Recorder:
         self._arrays += 1
         return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
-    def _tabled(self, names, compute, moved_by="", of=""):
+    def _tabled(self, names, compute, user_code="", of=""):
         """Nodes of the rows of a new table."""
         rows = range(self._rows, self._rows + len(names))
         self._rows = rows.stop
-        self.tables.append(Table(rows, compute, moved_by, names, of))
+        self.tables.append(Table(rows, compute, user_code, names, of))
         found = list(map(self.graph.row, rows))
 
         def unproven(bounds):
             raise NotGivenError(
-                f"no bound can be given: {moved_by} does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
+                f"no bound can be given: {user_code} does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
                 "so its rounding is unknown"
             )
 
-        if moved_by:
+        if user_code:
             self.inputs.update(dict.fromkeys(found, unproven))
         return list(map(_nodes, found))
 
