@@ -226,7 +226,7 @@ def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Prog
     user's group or load cannot be recorded.
     """
     structure, leaves = state.apart
-    if not leaves.lasting or state.way is not None:
+    if not leaves.lasting or state.placement_method is not None:
         if lasting:
             raise NotGivenError(f"{state.mechanism.name} has parts that may change unnoticed, so no recording is valid")
         return _recorded(state, structure, quantities, sizes), leaves
@@ -245,7 +245,7 @@ def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Prog
 
 def _recorded(state, structure, quantities, sizes):
     try:
-        return Program(record(structure, quantities, sizes, state.way))
+        return Program(record(structure, quantities, sizes, state.placement_method))
     except QuantityError:
         raise
     except (TypeError, AttributeError) as error:

@@ -136,13 +136,13 @@ class Recording:
         return max((node.arguments[0] + 1 for node in needed(self.outputs) if node.operation == "table"), default=0)
 
 
-def record(structure, quantities, sizes=False, way=None) -> Recording:
+def record(structure, quantities, sizes=False, placement_method=None) -> Recording:
     """Record the arithmetic of some quantities of a structure, see `parameter_tree.flatten`.
 
     `quantities` are names as for `quantities.components`; None: closure and all results of the groups. `sizes` records
-    magnitudes of vectors instead of their components; `way` is another method for the positions, see `Dynamics`.
+    magnitudes of vectors instead of their components; `placement_method` is that of `Dynamics`.
     """
-    recorder = Recorder(structure, way, SimplifiedGraph())
+    recorder = Recorder(structure, placement_method, SimplifiedGraph())
     if quantities is None:
         quantities = resolved_names(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -169,7 +169,7 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 class Recorder:
     """Replaces the numbers of a structure by nodes of a graph: a new plain `Graph` unless one is given."""
 
-    def __init__(self, structure, way=None, graph=None):
+    def __init__(self, structure, placement_method=None, graph=None):
         self.graph = Graph() if graph is None else graph
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
@@ -184,7 +184,7 @@ class Recorder:
         for guide in mechanism.guides.values():
             rounded = (part for part in guide.rounded if isinstance(part, Node))
             self.inputs |= dict.fromkeys(rounded, lambda bounds: Error(1.0, None))
-        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), friction, sense, way)
+        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), friction, sense, placement_method)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
     def _parameter(self):

@@ -57,17 +57,17 @@ class Dynamics(Motion):
 
     Attributes
     ----------
-    way : function, optional
-        ``way(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, for example by harmonic
-        series.
+    placement_method : function, optional
+        ``placement_method(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, for example
+        by harmonic series.
     """
 
-    way: Callable[[Any, Any], Any] | None = None
+    placement_method: Callable[[Any, Any], Any] | None = None
 
     @cached_property
     def placement(self):
         """Joints and links by name, as kinematic coefficients."""
-        return (self.way or type(self.mechanism).place)(self.mechanism, self.crank_angle)
+        return (self.placement_method or type(self.mechanism).place)(self.mechanism, self.crank_angle)
 
     @cached_property
     def resolved(self):
