@@ -211,24 +211,24 @@ class JointFriction(Batched):
 class Frictions(Mapping, Batched):
     """Friction by joint, a mapping; `passes` is the number of iterations of the directions of reactions."""
 
-    rubs: tuple[JointFriction, ...] = ()
+    by_joint: tuple[JointFriction, ...] = ()
     passes: int = PASSES_BY_SOLVER[0]
 
     __eq__, __hash__ = object.__eq__, object.__hash__
-    PATHS: ClassVar = {"rubs": ""}
-    RULES = checks.Rules("friction", rubs=checks.HasMembers((), "friction by joint"))
+    PATHS: ClassVar = {"by_joint": ""}
+    RULES = checks.Rules("friction", by_joint=checks.HasMembers((), "friction by joint"))
 
     def __post_init__(self):
         """Check nothing: `friction_problems` checks the values together with the mechanism."""
 
     def __getitem__(self, name):
-        return {rub.joint: rub.friction for rub in self.rubs}[name]
+        return {item.joint: item.friction for item in self.by_joint}[name]
 
     def __iter__(self):
-        return (rub.joint for rub in self.rubs)
+        return (item.joint for item in self.by_joint)
 
     def __len__(self):
-        return len(self.rubs)
+        return len(self.by_joint)
 
     def __repr__(self):
         return repr(dict(self))
@@ -236,12 +236,12 @@ class Frictions(Mapping, Batched):
     @property
     def acting(self):
         """Friction by joint, without zero coefficients."""
-        return {rub.joint: rub.friction for rub in self.rubs if _acts(rub.friction)}
+        return {item.joint: item.friction for item in self.by_joint if _acts(item.friction)}
 
     @property
     def senses(self):
         """Sign of the motion by joint, if it is known beforehand."""
-        return {rub.joint: rub.sense for rub in self.rubs if rub.sense is not None}
+        return {item.joint: item.sense for item in self.by_joint if item.sense is not None}
 
 
 NO_FRICTION = Frictions()

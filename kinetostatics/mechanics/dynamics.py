@@ -153,7 +153,7 @@ class Dynamics(Motion):
     @cached_property
     def friction_solver(self):
         """Solver of the groups with friction; None without friction."""
-        return FrictionSolver(self.mechanism, self.friction, self.crank_sense) if self.friction.rubs else None
+        return FrictionSolver(self.mechanism, self.friction, self.crank_sense) if self.friction.by_joint else None
 
     @cached_property
     def friction_by_joint(self):
@@ -219,7 +219,7 @@ class Dynamics(Motion):
         """A force or moment by name, (..., N)."""
         scalars = self.resolved.scalars
         found = self._look_up("quantity", name, scalars)
-        if self.friction.rubs and not hasattr(found, "shape"):  # a constant is NaN too where friction jams
+        if self.friction.by_joint and not hasattr(found, "shape"):  # a constant is NaN too where friction jams
             found = found + 0.0 * scalars["balancing_torque"]
         return self._scalar(found)
 
