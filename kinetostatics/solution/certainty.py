@@ -91,7 +91,7 @@ def doubt_text(doubts):
 
 
 @lru_cache(maxsize=64)
-def _codes(count):
+def _sign_codes(count):
     """Integers of few bits with distinct pairwise exclusive ors: no two pairs have equal signs in all sums."""
     codes: list[int] = []
     known: set[int] = set()
@@ -121,7 +121,7 @@ def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None
 
         squares = {(path,): 0.5 * (alone[1.0][path] + alone[-1.0][path]) for path in paths}
         if len(paths) > MAX_PAIRWISE_INPUTS:
-            codes = dict(zip(paths, _codes(len(paths)), strict=True))
+            codes = dict(zip(paths, _sign_codes(len(paths)), strict=True))
             bits = [0, *(1 << row for row in range(max(codes.values()).bit_length()))]
             signs = ({path: -1.0 if code & bit else 1.0 for path, code in codes.items()} for bit in bits)
             sums = {("all", str(row)): products(part) for row, part in enumerate(signs)}
