@@ -43,14 +43,14 @@ MAX_PAIRWISE_INPUTS = 3
 
 
 class LargeSecondOrder(NamedTuple):
-    """Values with a second order that is not small: their number `values` of `of`, and the worst of them.
+    """Values with a second order that is not small: their number `values` of `total`, and the worst of them.
 
     `paths` are the one or two inputs with the largest second order there; the second order is NaN where the
     quantity has no value with these inputs changed.
     """
 
     values: int
-    of: int
+    total: int
     angle: float
     paths: tuple[str, ...]
     first: float
@@ -64,7 +64,7 @@ class LargeSecondOrder(NamedTuple):
             most = " and ".join(self.paths) + (" together" if len(self.paths) > 1 else "")
             found = f"first order {self.first:.2g} {unit}, second order {self.second:.2g}, mostly from {most}"
         where = f"at {np.degrees(self.angle):.9g} deg {found}; vary the inputs there, as ks.tolerances does"
-        places = f"which is not accurate at {self.values} of {self.of} crank angles"
+        places = f"which is not accurate at {self.values} of {self.total} crank angles"
         return Doubt(quantity, places, where, self.second / self.first if self.first > 0.0 else np.inf)
 
 
