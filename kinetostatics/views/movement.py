@@ -107,7 +107,7 @@ def _drawing(name, shape, reactions, torque, frame, boxes):
     made = solution.mechanism
     strokes = [*_fixed_strokes(shape), *shape.counterweights(solution), *shape.strokes(solution)]
     strokes += [*shape.ties(solution, solution.loads), *moving_surfaces(solution, solution)]
-    strokes += shape.signs(solution.loads, solution)
+    strokes += shape.symbols(solution.loads, solution)
     boxes += [_corners(stroke) for stroke in strokes]
     outputs = made.outputs
     arrows = {joint: outputs[joint].at or joint for joint in reactions}

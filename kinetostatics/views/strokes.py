@@ -44,13 +44,13 @@ def left(direction):
     return np.array([-direction[1], direction[0]])
 
 
-def place_sign(shape, origin, direction, size=1.0, sense=1.0):
+def place_symbol(shape, origin, direction, size=1.0, sense=1.0):
     """Points (2, K, N) of a shape (K, 2) in axes with origin and direction (2, N); mirrored where the sense is -1."""
     along, across = size * np.asarray(shape, dtype=float).T[..., None]
     return origin[:, None] + direction[:, None] * along + left(direction)[:, None] * (sense * across)
 
 
-def span_sign(shape, start, end, width):
+def span_symbol(shape, start, end, width):
     """Points (2, K, N) of a shape (K, 2) stretched from start to end, with a width across."""
     apart = end - start
     length = np.hypot(*apart)
@@ -101,7 +101,7 @@ class RigidStroke(NamedTuple):
     @property
     def points(self):
         """Points (2, K, N) in each pose."""
-        return place_sign(self.own.T, self.origin, self.direction)
+        return place_symbol(self.own.T, self.origin, self.direction)
 
 
 def _placed(kind, shape, origin, direction, size=1.0, sense=1.0):
@@ -126,7 +126,7 @@ class Shape:
         return float(np.max(np.nanmax(joints, axis=-1) - np.nanmin(joints, axis=-1))) or 1.0
 
     @cached_property
-    def _signs_over_turn(self):
+    def _symbols_over_turn(self):
         return {}
 
     @property
@@ -252,49 +252,49 @@ class Shape:
         """Links with mass."""
         return [name for name, link in self.mechanism.links.items() if np.any(link.mass)]
 
-    def signs(self, loads, pose):
+    def symbols(self, loads, pose):
         """Lines of all loads in the poses of a motion."""
         for item in loads:
-            for sign in self._signs(item, pose):
-                yield from self._sign(sign)
+            for symbol in self._symbols(item, pose):
+                yield from self._draw(symbol)
 
-    def _signs(self, item, pose):
+    def _symbols(self, item, pose):
         """Symbols of a load in the poses of a motion; those over the turn are kept. A user's own load may have none."""
         if not hasattr(item, "signs"):
             return ()
         if pose is not self.turn:
             return item.signs(pose)
-        if id(item) not in self._signs_over_turn:
-            self._signs_over_turn[id(item)] = item, tuple(item.signs(pose))  # no other load gets its id
-        return self._signs_over_turn[id(item)][1]
+        if id(item) not in self._symbols_over_turn:
+            self._symbols_over_turn[id(item)] = item, tuple(item.signs(pose))  # no other load gets its id
+        return self._symbols_over_turn[id(item)][1]
 
-    def _sign(self, sign):
+    def _draw(self, symbol):
         unit = self.unit
-        if sign.slider:
-            away = sign.sense * np.asarray(self.mechanism.guides[sign.slider].direction, dtype=float)
-            far = self.ways[sign.slider][:, np.argmax(away @ self.ways[sign.slider])]
-            end = (far + 6.0 * unit * away)[:, None] + 0.0 * sign.start
-            start = sign.start + unit * away[:, None]
-            shape = SPRING if sign.kind == "spring" else DAMPER
-            yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
-            yield Stroke(sign.kind, span_sign([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
-        elif sign.kind == "force":
-            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), sign.start, sign.sense * sign.direction, unit)
-        elif sign.kind == "shaft":
-            yield _ring("line", sign.start, 2.0 * unit)
-            yield _placed("counterweight", SECTOR, sign.start, sign.direction, 2.0 * unit)
-        elif sign.end is not None:
-            shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
-            start, end = self._near_part(sign.start, sign.end)
-            yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
+        if symbol.slider:
+            away = symbol.sense * np.asarray(self.mechanism.guides[symbol.slider].direction, dtype=float)
+            far = self.ways[symbol.slider][:, np.argmax(away @ self.ways[symbol.slider])]
+            end = (far + 6.0 * unit * away)[:, None] + 0.0 * symbol.start
+            start = symbol.start + unit * away[:, None]
+            shape = SPRING if symbol.kind == "spring" else DAMPER
+            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * unit))
+            yield Stroke(symbol.kind, span_symbol([(1.0, -1.0), (1.0, 1.0)], symbol.start, end, unit))
+        elif symbol.kind == "force":
+            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), symbol.start, symbol.sense * symbol.direction, unit)
+        elif symbol.kind == "shaft":
+            yield _ring("line", symbol.start, 2.0 * unit)
+            yield _placed("counterweight", SECTOR, symbol.start, symbol.direction, 2.0 * unit)
+        elif symbol.end is not None:
+            shape = {"spring": SPRING, "damper": DAMPER}.get(symbol.kind, LINE)
+            start, end = self._near_part(symbol.start, symbol.end)
+            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * unit))
         else:
-            shape = {"spiral": SPIRAL, "ring": RING}.get(sign.kind, COUPLE)
-            kind = "force" if sign.kind == "couple" else "spring"
-            size, senses = 1.6 * unit, np.unique(sign.sense)
+            shape = {"spiral": SPIRAL, "ring": RING}.get(symbol.kind, COUPLE)
+            kind = "force" if symbol.kind == "couple" else "spring"
+            size, senses = 1.6 * unit, np.unique(symbol.sense)
             if senses.size == 1:
-                yield _ring(kind, sign.start, size, shape, senses[0])
+                yield _ring(kind, symbol.start, size, shape, senses[0])
             else:
-                yield Stroke(kind, place_sign(shape, sign.start, np.array([[1.0], [0.0]]), size, sign.sense))
+                yield Stroke(kind, place_symbol(shape, symbol.start, np.array([[1.0], [0.0]]), size, symbol.sense))
 
     def _near_part(self, start, end):
         """Ends of a line, in poses; if it leads far away, those of a part beside the machine."""
@@ -325,11 +325,11 @@ class Shape:
             if point.link == FRAME:
                 yield self.turn.position(name)[:, 0]
         for item in loads:
-            for sign in self._signs(item, self.turn):
-                if sign.kind == "shaft":
-                    yield sign.start[:, 0]
-                elif sign.kind in ("spring", "damper", "line") and sign.end is not None:
-                    ends = () if self._leads_far(sign.start, sign.end) else (sign.start, sign.end)
+            for symbol in self._symbols(item, self.turn):
+                if symbol.kind == "shaft":
+                    yield symbol.start[:, 0]
+                elif symbol.kind in ("spring", "damper", "line") and symbol.end is not None:
+                    ends = () if self._leads_far(symbol.start, symbol.end) else (symbol.start, symbol.end)
                     yield from (end[:, 0] for end in ends if not np.ptp(end, axis=-1).any())
 
 
@@ -446,7 +446,7 @@ def moves_alike(solution, other):
 
 def load_strokes(solution, angle):
     """Symbols of the loads of a machine in a pose, as strokes."""
-    return list(Shape(whole_turn(solution)).signs(solution.loads, at_angles(solution, angle)))
+    return list(Shape(whole_turn(solution)).symbols(solution.loads, at_angles(solution, angle)))
 
 
 def strokes_by_owner(named, angle):
