@@ -72,7 +72,7 @@ def lines(solution, shape, name):
         reach = solution.measure("cylinder_length")[0]
         yield LINES["bar" if name == "rod" else "slotted"], put(np.array([[0.0, 0.7 * reach], [0.0, 0.0]]))
     if name in made.guides or name == "block":
-        size = shape.unit * (1.0 if name in made.guides else 0.8)
+        size = shape.half_block * (1.0 if name in made.guides else 0.8)
         yield PLATES["block"], place[:, None] + _box(turn, size)
 
 
@@ -123,7 +123,7 @@ def apart(solution, link, place, degrees, gap=0.36):
         if name == "crank":
             sense = np.sign(solution.balancing_torque[0])
             level = np.array([[1.0], [0.0]])
-            ring = strokes.place_symbol(strokes.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.unit, sense)[..., 0]
+            ring = strokes.place_symbol(strokes.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.half_block, sense)[..., 0]
             drawn.append(({"color": LOAD, "lw": 1.4}, ring))
         corners = [points for _, points in drawn] + [np.column_stack(item[:2]) for item in arrows]
         low, high = (np.nanmax(np.sign(way) * np.concatenate(corners, axis=1), axis=1) for way in (-1, 1))

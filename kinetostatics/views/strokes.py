@@ -130,7 +130,7 @@ class Shape:
         return {}
 
     @property
-    def unit(self):
+    def half_block(self):
         """Half the length of a block, m."""
         return 0.03 * self.size
 
@@ -144,7 +144,7 @@ class Shape:
             seen = rotate_back([here - there for here, there in pairs], link.direction)
             ends = _ends(np.array(np.broadcast_arrays(*seen)))
             apart = ends[:, 1] - ends[:, 0]
-            more = apart * self.unit / (np.hypot(*apart) or 1.0)
+            more = apart * self.half_block / (np.hypot(*apart) or 1.0)
             found.append((slot, ends if slot.rod else ends + np.column_stack([-more, more])))
         return found
 
@@ -180,9 +180,9 @@ class Shape:
         """Hatched lines (2, K) along guides, over the travel of their sliders."""
         for slider, guide in self.mechanism.guides.items():
             along = np.asarray(guide.direction, dtype=float)
-            below, reach = 0.6 * self.unit * left(along), 1.5 * self.unit * along
+            below, reach = 0.6 * self.half_block * left(along), 1.5 * self.half_block * along
             start, end = self.ways[slider].T
-            yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.unit)
+            yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.half_block)
 
     def strokes(self, pose, links=None):
         """Lines and plates of all links, or of some, in the poses of a motion, from back to front."""
@@ -210,12 +210,12 @@ class Shape:
             if link in links and (link in self.mechanism.guides or (corners.shape[1] == 1 and link not in rods)):
                 turn = pose.as_vector(pose.placement.links[link].direction)
                 place = pose.position(self.mechanism.references[link])
-                size = self.unit if link in self.mechanism.guides else 0.8 * self.unit
+                size = self.half_block if link in self.mechanism.guides else 0.8 * self.half_block
                 yield _placed("block", RECTANGLE, place, turn, size)
         for joint, radius in self.mechanism.rollers.items():
             if self.mechanism.joints[joint].link not in links:
                 continue
-            size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
+            size = 0.9 * self.half_block if radius is None else float(np.ravel(radius)[0])
             yield _ring("roller", pose.position(joint), size)
 
     def _piston(self, pose, slot, ends):
@@ -225,9 +225,9 @@ class Shape:
         axis = (joint - origin) / np.hypot(*(joint - origin))
         length = max(0.8 * near, far - 0.6 * near)
         yield _placed("bar", [(0.0, 0.0), (-length, 0.0)], joint, axis)
-        barrel = [(0.0, -0.5), (0.85 * near / self.unit, -0.5), (0.85 * near / self.unit, 0.5), (0.0, 0.5)]
-        yield _placed("plate", barrel, origin, axis, self.unit)
-        yield _placed("bar", [(0.0, -0.5), (0.0, 0.5)], joint - axis * length, axis, self.unit)
+        barrel = [(0.0, -0.5), (0.85 * near / self.half_block, -0.5), (0.85 * near / self.half_block, 0.5), (0.0, 0.5)]
+        yield _placed("plate", barrel, origin, axis, self.half_block)
+        yield _placed("bar", [(0.0, -0.5), (0.0, 0.5)], joint - axis * length, axis, self.half_block)
 
     def counterweights(self, pose):
         """Counterweights of turning links whose mass centres lie beyond their joints.
@@ -237,10 +237,10 @@ class Shape:
         for name, link in self.mechanism.links.items():
             along, across = (float(np.ravel(part)[0]) for part in link.centre)
             arm, reach = np.hypot(along, across), self.corners[name][0].max()
-            turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.unit
-            if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
+            turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.half_block
+            if turns and reach > 0.0 and along > reach + 0.3 * self.half_block:
                 yield _on_link("bar", pose, name, np.array([[reach, along], [0.0, across]]))
-                yield _ring("counterweight", pose.position(name), 2.0 * self.unit)
+                yield _ring("counterweight", pose.position(name), 2.0 * self.half_block)
             if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
                 radius = arm * 1.5 * HALF_SECTOR / np.sin(HALF_SECTOR)
                 angle = np.arctan2(across, along) + np.linspace(-HALF_SECTOR, HALF_SECTOR, 24)
@@ -269,28 +269,28 @@ class Shape:
         return self._symbols_over_turn[id(item)][1]
 
     def _draw(self, symbol):
-        unit = self.unit
+        half = self.half_block
         if symbol.slider:
             away = symbol.sense * np.asarray(self.mechanism.guides[symbol.slider].direction, dtype=float)
             far = self.ways[symbol.slider][:, np.argmax(away @ self.ways[symbol.slider])]
-            end = (far + 6.0 * unit * away)[:, None] + 0.0 * symbol.start
-            start = symbol.start + unit * away[:, None]
+            end = (far + 6.0 * half * away)[:, None] + 0.0 * symbol.start
+            start = symbol.start + half * away[:, None]
             shape = SPRING if symbol.kind == "spring" else DAMPER
-            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * unit))
-            yield Stroke(symbol.kind, span_symbol([(1.0, -1.0), (1.0, 1.0)], symbol.start, end, unit))
+            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * half))
+            yield Stroke(symbol.kind, span_symbol([(1.0, -1.0), (1.0, 1.0)], symbol.start, end, half))
         elif symbol.kind == "force":
-            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), symbol.start, symbol.sense * symbol.direction, unit)
+            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), symbol.start, symbol.sense * symbol.direction, half)
         elif symbol.kind == "shaft":
-            yield _ring("line", symbol.start, 2.0 * unit)
-            yield _placed("counterweight", SECTOR, symbol.start, symbol.direction, 2.0 * unit)
+            yield _ring("line", symbol.start, 2.0 * half)
+            yield _placed("counterweight", SECTOR, symbol.start, symbol.direction, 2.0 * half)
         elif symbol.end is not None:
             shape = {"spring": SPRING, "damper": DAMPER}.get(symbol.kind, LINE)
             start, end = self._near_part(symbol.start, symbol.end)
-            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * unit))
+            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * half))
         else:
             shape = {"spiral": SPIRAL, "ring": RING}.get(symbol.kind, COUPLE)
             kind = "force" if symbol.kind == "couple" else "spring"
-            size, senses = 1.6 * unit, np.unique(symbol.sense)
+            size, senses = 1.6 * half, np.unique(symbol.sense)
             if senses.size == 1:
                 yield _ring(kind, symbol.start, size, shape, senses[0])
             else:
@@ -316,7 +316,7 @@ class Shape:
                 continue
             point = np.array([float(np.ravel(part)[0]) for part in place])
             foot = _nearest_on(_outline(self.corners[name])[1], point)
-            if np.hypot(*(foot - point)) > 0.5 * self.unit:
+            if np.hypot(*(foot - point)) > 0.5 * self.half_block:
                 yield _on_link("tie", pose, name, np.column_stack([point, foot]))
 
     def grounds(self, loads):
