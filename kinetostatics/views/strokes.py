@@ -149,7 +149,7 @@ class Shape:
         return found
 
     @cached_property
-    def ways(self):
+    def travels(self):
         """By slider: both ends of its travel, (2, 2), along its guide."""
         found = {}
         for slider, guide in self.mechanism.guides.items():
@@ -181,7 +181,7 @@ class Shape:
         for slider, guide in self.mechanism.guides.items():
             along = np.asarray(guide.direction, dtype=float)
             below, reach = 0.6 * self.half_block * left(along), 1.5 * self.half_block * along
-            start, end = self.ways[slider].T
+            start, end = self.travels[slider].T
             yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.half_block)
 
     def strokes(self, pose, links=None):
@@ -272,7 +272,7 @@ class Shape:
         half = self.half_block
         if symbol.slider:
             away = symbol.sense * np.asarray(self.mechanism.guides[symbol.slider].direction, dtype=float)
-            far = self.ways[symbol.slider][:, np.argmax(away @ self.ways[symbol.slider])]
+            far = self.travels[symbol.slider][:, np.argmax(away @ self.travels[symbol.slider])]
             end = (far + 6.0 * half * away)[:, None] + 0.0 * symbol.start
             start = symbol.start + half * away[:, None]
             shape = SPRING if symbol.kind == "spring" else DAMPER
@@ -426,8 +426,8 @@ def whole_turn(solution):
 
 def at_angles(solution, degrees):
     """Motion at other crank angles, degrees, without loads; the speed is the solution's sign, 0 if it has several."""
-    ways = np.unique(np.sign(solution.crank_speed))
-    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
+    senses = np.unique(np.sign(solution.crank_speed))
+    return Motion(solution.mechanism, np.radians(degrees), float(senses[0]) if senses.size == 1 else 0.0, 0.0)
 
 
 def moves_alike(solution, other):
