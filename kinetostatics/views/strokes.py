@@ -195,8 +195,8 @@ class Shape:
             if isinstance(pair, Meshing) and pair.link in links:  # pitch circles of planet and ring
                 axis = pose.position(pair.joint)
                 size = float(np.max(np.hypot(*axis)))
-                yield _ring("outline", axis, size, LARGE_RING)
-                yield _ring("outline", 0.0 * axis, 2.0 * size, LARGE_RING)
+                yield _unturned("outline", axis, size, LARGE_RING)
+                yield _unturned("outline", 0.0 * axis, 2.0 * size, LARGE_RING)
         for link, corners in self.corners.items():
             if corners.shape[1] > 1 and link in links:
                 kind, outline = _outline(corners)
@@ -216,7 +216,7 @@ class Shape:
             if self.mechanism.joints[joint].link not in links:
                 continue
             size = 0.9 * self.half_block if radius is None else float(np.ravel(radius)[0])
-            yield _ring("roller", pose.position(joint), size)
+            yield _unturned("roller", pose.position(joint), size)
 
     def _piston(self, pose, slot, ends):
         """Cylinder from its reference joint to the nearer end of the travel, and a rod in it."""
@@ -240,7 +240,7 @@ class Shape:
             turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.half_block
             if turns and reach > 0.0 and along > reach + 0.3 * self.half_block:
                 yield _on_link("bar", pose, name, np.array([[reach, along], [0.0, across]]))
-                yield _ring("counterweight", pose.position(name), 2.0 * self.half_block)
+                yield _unturned("counterweight", pose.position(name), 2.0 * self.half_block)
             if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
                 radius = arm * 1.5 * HALF_SECTOR / np.sin(HALF_SECTOR)
                 angle = np.arctan2(across, along) + np.linspace(-HALF_SECTOR, HALF_SECTOR, 24)
@@ -281,7 +281,7 @@ class Shape:
         elif symbol.kind == "force":
             yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), symbol.start, symbol.sense * symbol.direction, half)
         elif symbol.kind == "shaft":
-            yield _ring("line", symbol.start, 2.0 * half)
+            yield _unturned("line", symbol.start, 2.0 * half)
             yield _placed("counterweight", SECTOR, symbol.start, symbol.direction, 2.0 * half)
         elif symbol.end is not None:
             shape = {"spring": SPRING, "damper": DAMPER}.get(symbol.kind, LINE)
@@ -292,7 +292,7 @@ class Shape:
             kind = "force" if symbol.kind == "couple" else "spring"
             size, senses = 1.6 * half, np.unique(symbol.sense)
             if senses.size == 1:
-                yield _ring(kind, symbol.start, size, shape, senses[0])
+                yield _unturned(kind, symbol.start, size, shape, senses[0])
             else:
                 yield Stroke(kind, place_symbol(shape, symbol.start, np.array([[1.0], [0.0]]), size, symbol.sense))
 
@@ -340,7 +340,7 @@ def _on_link(kind, pose, link, points):
     )
 
 
-def _ring(kind, place, radius, points=RING, sense=1.0):
+def _unturned(kind, place, radius, points=RING, sense=1.0):
     """A stroke that does not turn, by default a circle."""
     return _placed(kind, points, place, np.broadcast_to([[1.0], [0.0]], place.shape), radius, sense)
 
