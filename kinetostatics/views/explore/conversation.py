@@ -20,7 +20,7 @@ class Conversation:
         self.session, self._send = session, send
         self._tasks: dict[str, asyncio.Task] = {}
 
-    def take(self, request):
+    def answer(self, request):
         """Answer a request: at once, or part by part in a task of the running event loop."""
         kind = request.get("kind")
         found = self.session.answer(request)
