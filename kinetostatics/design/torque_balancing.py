@@ -297,15 +297,15 @@ def torque_balancing_cam(
         switches = np.atleast_1d(checks.check_values(OWNER, SWITCH_RULES, {"switches": switches})["switches"])
     torque, energy = _energy(scene, switches)
     moving = values["mass"] * float(scene.crank_speed) ** 2
-    swing, peak, lows = _energy_swing(torque, energy)
+    stored, peak, lows = _energy_range(torque, energy)
     travel = values["travel"]
-    stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
-    least = swing / (stiffness * travel) - travel / 2.0
+    stiffness = values.get("stiffness", 2.0 * stored / (3.0 * travel * travel))
+    least = stored / (stiffness * travel) - travel / 2.0
     if least <= 0.0:
         raise ParameterError(
-            f"{OWNER}: a spring of {stiffness:.6g} N/m stores more than the {swing:.6g} J of the machine on a travel "
-            f"of {travel:.6g} m without preload. Choose less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
-            f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
+            f"{OWNER}: a spring of {stiffness:.6g} N/m stores more than the {stored:.6g} J of the machine on a travel "
+            f"of {travel:.6g} m without preload. Choose less than {2.0 * stored / travel**2:.6g} N/m, or a travel "
+            f"below {np.sqrt(2.0 * stored / stiffness):.6g} m"
         )
     level = peak + 0.5 * stiffness * least * least
     reserve, low = min((spring_follower.reserve(energy, low, level, moving, stiffness), low) for low in lows)
@@ -329,7 +329,7 @@ def torque_balancing_cam(
     loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
     radii = {name: values.get(name) for name in ("shaft_radius", "roller_radius")}
     ends = least, least + travel
-    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, **radii)
+    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, stored, ends, reserve, **radii)
 
 
 def _parse_values(scene, **given):
@@ -366,7 +366,7 @@ def _energy(scene, switches):
     return torque, torque.plus(-torque.mean).integral
 
 
-def _energy_swing(torque, energy):
+def _energy_range(torque, energy):
     """Range and peak of the machine's energy, J, and the crank angles of its minima."""
     mean = torque.mean
     size = float(np.max(np.abs(torque(turn_angles(torque.edges, ANGLE_COUNT)))))
