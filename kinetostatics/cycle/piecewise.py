@@ -322,8 +322,7 @@ class Pieces:
         -------
         angle, piece : array (K,)
         starts : array (pieces,) of bool
-            Whether it turns at the start of a piece, or is constant in this piece or the one before. The last piece
-            precedes the first.
+            Whether it turns at a piece's start, or is constant in it or in the one before (for the first, the last).
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
         large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * rounding

@@ -361,10 +361,7 @@ def _has_tabled_cam(mechanism):
 
 
 def _error_of_piece(bounds, kinks, travel, rate, own=None):
-    """Error of a table's value, as the exact place may be in another piece or stroke, plus its rounding `own`.
-
-    `kinks` are the results of `table_pieces.kink_bounds`.
-    """
+    """Error of a table's value: its rounding, `own`, and a change of piece or stroke, from `kinks` (`kink_bounds`)."""
     change, jump, near, distance = kinks
     bounds.look_at((travel, rate))
     jumps = plus(plus(jump / UNIT_ROUNDOFF, own), 0.0 / bounds.above(near, bounds.total(rate)))

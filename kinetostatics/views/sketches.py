@@ -185,12 +185,9 @@ class _Dimensions:
 
     def place(self, lines, costs):
         """The line (2, K) of lowest cost that avoids drawn objects; later lines avoid it."""
-        samples = [_dense(line, 0.5 * self.half_block) for line in lines]
+        samples, room = [_dense(line, 0.5 * self.half_block) for line in lines], CLEARANCE * self.half_block
         close = [
-            np.mean(
-                np.min(np.hypot(*(self.occupied[:, None] - dense[..., None])), axis=1) < CLEARANCE * self.half_block
-            )
-            for dense in samples
+            np.mean(np.min(np.hypot(*(self.occupied[:, None] - dense[..., None])), axis=1) < room) for dense in samples
         ]
         best = int(np.argmin(TOO_CLOSE * np.array(close) + costs))
         self.occupied = np.concatenate([self.occupied, samples[best]], axis=1)

@@ -1,7 +1,6 @@
 """Faults of values as sentences, the one error that lists them, and "did you mean" by synonyms and spelling.
 
-A function named after a kind of value (`count`, `truth`, `mapping` ...) returns the fault of a value that should be of
-this kind, None if it is.
+A function named after a kind of value (`count`, `truth` ...) returns the fault of a value not of this kind, or None.
 """
 
 import numbers
