@@ -72,7 +72,7 @@ def lines(solution, shape, name):
         reach = solution.measure("cylinder_length")[0]
         yield LINES["bar" if name == "rod" else "slotted"], put(np.array([[0.0, 0.7 * reach], [0.0, 0.0]]))
     if name in made.guides or name == "block":
-        size = shape.unit * (1.0 if name in made.guides else 0.8)
+        size = shape.half_block * (1.0 if name in made.guides else 0.8)
         yield PLATES["block"], place[:, None] + _box(turn, size)
 
 
@@ -123,7 +123,7 @@ def apart(solution, link, place, degrees, gap=0.36):
         if name == "crank":
             sense = np.sign(solution.balancing_torque[0])
             level = np.array([[1.0], [0.0]])
-            ring = strokes.place_sign(strokes.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.unit, sense)[..., 0]
+            ring = strokes.place_symbol(strokes.COUPLE, np.zeros((2, 1)), level, 1.8 * shape.half_block, sense)[..., 0]
             drawn.append(({"color": LOAD, "lw": 1.4}, ring))
         corners = [points for _, points in drawn] + [np.column_stack(item[:2]) for item in arrows]
         low, high = (np.nanmax(np.sign(way) * np.concatenate(corners, axis=1), axis=1) for way in (-1, 1))
@@ -641,7 +641,7 @@ def springs():
     draw_spring(one, ks.sizing.HelicalSpring(**made), ("d", "D", "$L_0$", "$L_s$"))
     for height, end, name in ((0.0, 1.3, "opposed: two springs, always pressed"), (1.6, 0.0, "push-pull: one spring")):
         for start, far in ((-2.2, -0.4), (2.2, 0.4))[: 1 + (end > 0.0)]:
-            points = strokes.span_sign(strokes.SPRING, *np.array([[[start], [height]], [[far], [height]]]), 0.22)
+            points = strokes.span_symbol(strokes.SPRING, *np.array([[[start], [height]], [[far], [height]]]), 0.22)
             two.plot(*points[..., 0], color=INK, lw=1.0)
             wall = np.array([[start, height - 0.4], [start, height + 0.4]])[:: 1 if start < 0 else -1]
             two.plot(*strokes.hatched_line(*wall[::-1], 0.1), color=INK, lw=0.8)

@@ -273,7 +273,7 @@ def _resolved(turn, quantity, good, floor, scale, pulsed):
     def rounding(pieces):
         if not turn.limits.size:
             return np.full(len(pieces.half), floor[0])
-        return np.interp(pieces.checked, turn.angle, np.where(np.isfinite(floor), floor, np.inf)).max(axis=1)
+        return np.interp(pieces.check_angles, turn.angle, np.where(np.isfinite(floor), floor, np.inf)).max(axis=1)
 
     def steep(pieces, values):
         """Error of steep values, as on the flank of a step, from the rounding of crank angles."""

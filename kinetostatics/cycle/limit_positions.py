@@ -43,7 +43,7 @@ class Turn:
     Attributes
     ----------
     at : Solution
-        At `angle`, rising: `Pieces.checked`, and the limit positions.
+        At `angle`, rising: `Pieces.check_angles`, and the limit positions.
     pieces : Pieces
     gaps : tuple of (float, float)
         Crank angles between which the mechanism does not close.
@@ -87,7 +87,7 @@ class Turn:
         gaps, limits, passed = _limit_positions(solution, forces)
         graded = np.ravel(limits[:, None] + np.concatenate([-EDGE_DISTANCES, [0.0], EDGE_DISTANCES]))
         pieces = Pieces.between(np.mod(np.concatenate([kinks, graded]), period)[None], period, MAX_WIDTH)
-        angle = pieces.checked.ravel()
+        angle = pieces.check_angles.ravel()
         first = solution.at(np.unique(np.concatenate([angle, limits])) if limits.size else angle)
         if problem := repeating_problem(solution):
             raise ParameterError(problem)
@@ -100,8 +100,8 @@ class Turn:
 
     @cached_property
     def points(self):
-        """Indices (pieces, points + 2) of the samples at `Pieces.checked`."""
-        return np.searchsorted(self.angle, self.pieces.checked)
+        """Indices (pieces, points + 2) of the samples at `Pieces.check_angles`."""
+        return np.searchsorted(self.angle, self.pieces.check_angles)
 
     @cached_property
     def even(self):

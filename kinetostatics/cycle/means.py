@@ -91,7 +91,7 @@ def mean_absolute_torque_errors(solution):
     mean, error, _, pieces = _mean_of_absolute_torque(turn)
 
     bounds = turn.at.moved_to(turn.clear(pieces.angle.ravel())).error_bound("balancing_torque")
-    bound = math.fsum(pieces.whole(bounds.reshape(pieces.angle.shape))) / turn.period  # also of the magnitude
+    bound = math.fsum(pieces.piece_integrals(bounds.reshape(pieces.angle.shape))) / turn.period  # also of the magnitude
     return MeanErrors(SAFE * (bound + (pieces.count + ROUNDINGS) * UNIT_ROUNDOFF * mean), error)
 
 
@@ -106,7 +106,7 @@ def _mean_of_absolute_torque(turn):
     place, piece = pieces.zeros(values[0, :, 1:-1])
     parts = Pieces(np.union1d(pieces.edges, pieces.angle_at(piece, place)), pieces.count)
     sizes = np.abs(torque(parts.angle.ravel())).reshape(parts.angle.shape)
-    return math.fsum(parts.whole(sizes)) / turn.period, float(error), floor, parts
+    return math.fsum(parts.piece_integrals(sizes)) / turn.period, float(error), floor, parts
 
 
 class DriveMeans(NamedTuple):
@@ -145,7 +145,7 @@ def drive_means(solution):
         return np.array([there.balancing_torque, np.broadcast_to(time, angle.shape)])
 
     (torque, time), (error, _), pieces, values = means(by_angle, turn, [floor, 0.0])
-    size = math.fsum(pieces.whole(np.abs(values[0, :, 1:-1]))) / turn.period
+    size = math.fsum(pieces.piece_integrals(np.abs(values[0, :, 1:-1]))) / turn.period
     if error > WARNING_ERROR * size + floor:
         text = f"mean torque: it is accurate only to {error:.2g} N m of {torque:.6g}: the load is uneven"
         warnings.warn(text, ConditionWarning, stacklevel=5)
@@ -180,18 +180,18 @@ def means(function, turn, floor):
     def evaluate(angle, _=None):
         return function(angle.ravel()).reshape(-1, *angle.shape)
 
-    first = evaluate(turn.pieces.checked)
+    first = evaluate(turn.pieces.check_angles)
     profile = np.fmin(turn.condition, MAX_CONDITION) * (turn.limits.size > 0)
     noise = np.abs(first).max(axis=(1, 2))[:, None] * UNIT_ROUNDOFF
 
     def unresolved(pieces, errors, values):
         width = 2.0 * pieces.half[:, 0]
-        whole = np.abs(pieces.whole(values[..., 1:-1])).sum(axis=-1, keepdims=True)
+        whole = np.abs(pieces.piece_integrals(values[..., 1:-1])).sum(axis=-1, keepdims=True)
         rounding = np.reshape(floor, (-1, 1)) + noise * np.interp(pieces.edges[:-1], turn.angle, profile)
         error = errors * width
         rough = (errors > rounding) & (error > 1e-16 * whole) & (error > SPLIT_TOLERANCE * whole / width.size)
         return rough.any(axis=0)
 
     pieces, values, _ = turn.pieces.resolved(first, evaluate, unresolved)
-    total = np.array([math.fsum(row) for row in pieces.whole(values[..., 1:-1])])
+    total = np.array([math.fsum(row) for row in pieces.piece_integrals(values[..., 1:-1])])
     return total / turn.period, pieces.tails(values[..., 1:-1]) @ pieces.half[:, 0] / turn.period, pieces, values

@@ -18,7 +18,7 @@ from ..numbers.lazy import cached_property
 POINTS = 24
 """Points of a piece."""
 POINTS_BY_EDGES = ((400, 8), (60, 12), (20, 16))
-"""Limits of the number of edges, and the number of points of a piece above each."""
+"""Pairs (limit, points): with more edges than the limit, each piece has this number of points."""
 TAIL_TERMS = 3
 """Number of last coefficients of a series that estimate its error."""
 TAIL = 2e-14
@@ -30,13 +30,13 @@ MAX_UNRESOLVED = 100
 DENSE = 8
 """Number of places per point of a series in the search for extremes."""
 MIN_WIDTH = 1e-13
-"""Width of a piece, relative to the period, below which it is not split: it contains a jump."""
+"""Smallest width of a piece that is halved, relative to the period; a narrower rough piece contains a jump."""
 JUMP_OFFSET = 2.0**-44
 """Distance from a jump of the crank angles on its two sides, rad."""
 NEWTON_STEPS, NEWTON_TOLERANCE = 5, 1e-9
-"""Largest number of Newton steps, and last change of a place in [-1, 1]; a further step would be rounding."""
+"""Largest number of Newton steps, and change of a place in [-1, 1] below which a further step changes only rounding."""
 CHOPPED = 2e-3
-"""Last coefficients below this size, relative to the rounding of values, are 0 in the slope of a series."""
+"""Last coefficients below this share of the rounding of the values are set to 0 before a series is differentiated."""
 EQUAL_PEAKS = 1e-12
 """Relative difference of two peaks that counts as rounding."""
 
@@ -47,11 +47,11 @@ def signed_peak(low, high):
 
 
 class Rule(NamedTuple):
-    """Matrices from values at the points in [-1, 1] to series, integrals from -1, and more.
+    """Chebyshev points in [-1, 1], weights of the integral over it, dense places, and matrices.
 
-    From a series, `vander` goes to values at the points, and `many` to values at the dense places. `derived` goes to
-    the series of slopes, and `risen` to the series of integrals from -1. `check` goes from values at the points to the
-    last coefficients, and to values and slopes at both ends.
+    `series` turns values at the points into Chebyshev coefficients, and `integral` into integrals from -1 to each
+    point. `check` turns them into the last coefficients, and values and slopes at both ends. Coefficients become values
+    at the points by `vander`, at the places by `many`; `derived` differentiates, `risen` integrates from -1.
     """
 
     points: np.ndarray
@@ -68,6 +68,7 @@ class Rule(NamedTuple):
 
 @lru_cache
 def rule(count) -> Rule:
+    """The `Rule` of a number of points, computed once."""
     points = chebyshev.chebpts1(count)
     vander = chebyshev.chebvander(points, count - 1)
     series = vander.T * (np.where(np.arange(count) == 0, 1.0, 2.0) / count)[:, None]
@@ -91,8 +92,7 @@ def _weights(count):
 class Pieces:
     """Pieces of a period between edges, each with `count` points, of one design or of several.
 
-    Values are (..., pieces, points). Edges rise from the start to the end of the period; those of several designs
-    follow one another.
+    Values are (..., pieces, points). Edges rise over the period; for the next design they begin at its start again.
     """
 
     edges: np.ndarray
@@ -154,8 +154,8 @@ class Pieces:
         """Crank angles at places from -1 to 1 of pieces."""
         return self.middle[piece] + self.half[piece, 0] * place
 
-    def some(self, designs):
-        """Pieces of the designs in a mask, and the mask of these pieces."""
+    def of_designs(self, designs):
+        """Pieces of the designs in a mask, and the mask of these among all pieces."""
         own = np.append(np.cumsum(~self._inside, dtype=int) - ~self._inside, self.owner[-1])  # design of each edge
         return Pieces(self.edges[designs[own]], self.count), designs[self.owner]
 
@@ -167,35 +167,35 @@ class Pieces:
         """Largest of the pieces of each design, (..., designs)."""
         return np.maximum.reduceat(parts, self.firsts, axis=-1)
 
-    def integral(self, values):
+    def integral_in_piece(self, values):
         """Integral from the start of its piece to each point."""
-        return self.half * product(values, rule(self.count).integral)
+        return self.half * matrix_product(values, rule(self.count).integral)
 
-    def whole(self, values):
+    def piece_integrals(self, values):
         """Integral over each piece."""
-        return self.half[:, 0] * product(values, rule(self.count).weights[None])[..., 0]
+        return self.half[:, 0] * matrix_product(values, rule(self.count).weights[None])[..., 0]
 
     def before(self, parts):
-        """Sum over the earlier pieces of the same design."""
+        """For each piece: the sum of `parts` over the earlier pieces of its design."""
         number = np.arange(len(parts)) - self.firsts[self.owner]
         rows = np.zeros((self.firsts.size, number.max() + 2))
         rows[self.owner, number + 1] = parts
         return rows.cumsum(axis=1)[self.owner, number]
 
-    def integrated(self, values):
-        """Integral from the first edge to each point."""
-        return self.integral(values) + self.before(self.whole(values))[:, None]
+    def integral_from_start(self, values):
+        """Integral from the start of the period to each point."""
+        return self.integral_in_piece(values) + self.before(self.piece_integrals(values))[:, None]
 
-    def total(self, values):
+    def whole_integral(self, values):
         """Integral over all pieces."""
-        return float(self.whole(values).sum())
+        return float(self.piece_integrals(values).sum())
 
     def series(self, values):
         """Chebyshev coefficients (points, pieces)."""
-        return product(values, rule(self.count).series).T
+        return matrix_product(values, rule(self.count).series).T
 
     def smoothed(self, values):
-        """Values without the upper half of the coefficients, which is noise of values that are difference quotients."""
+        """Values without the upper half of the coefficients, which is noise where values are difference quotients."""
         count = self.count // 2
         return (rule(self.count).vander[:, :count] @ self.series(values)[:count]).T
 
@@ -207,10 +207,10 @@ class Pieces:
 
     def tails(self, values):
         """Size of the last coefficients of each piece, (..., pieces)."""
-        return np.abs(product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
+        return np.abs(matrix_product(values, rule(self.count).series[-TAIL_TERMS:])).max(axis=-1)
 
     def tail(self, values):
-        """The same relative to the largest value of all."""
+        """Size of the last coefficients of each piece, relative to the largest value of all pieces."""
         size = np.abs(values).max()
         return self.tails(values) / size if size else np.zeros(len(values))
 
@@ -223,22 +223,22 @@ class Pieces:
 
     def weights_at(self, place):
         """Weights (K, points) of the values at the points of a piece, for interpolation at places from -1 to 1."""
-        return waves(self.count, place).T @ rule(self.count).series
+        return chebyshev_values(self.count, place).T @ rule(self.count).series
 
     def weights_up_to(self, place):
         """Weights for the integrals from -1 to places."""
         own = rule(self.count)
-        return product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
+        return matrix_product(chebyshev.chebvander(place, self.count), (own.risen @ own.series).T)
 
     def summits(self, values, pieces):
         """Heights, pieces and places of the turning points and both ends of some pieces."""
         series = self.series(values[pieces])
-        place, own = self._zeros(product(series.T, rule(self.count).derived).T)
+        place, own = self._zeros(matrix_product(series.T, rule(self.count).derived).T)
         place, own = (
             np.append(np.repeat([-1.0, 1.0], len(pieces)), place),
             np.append(np.tile(np.arange(len(pieces)), 2), own),
         )
-        return np.einsum("np,np->p", series[:, own], waves(self.count, place)), pieces[own], place
+        return np.einsum("np,np->p", series[:, own], chebyshev_values(self.count, place)), pieces[own], place
 
     def peaks(self, values):
         """Highest value of each design, its piece, and its place there, each (designs,); NaN if a value is NaN.
@@ -274,17 +274,17 @@ class Pieces:
         return 2.0 * self.half[:, 0] > MIN_WIDTH * self.period
 
     @property
-    def checked(self):
-        """Crank angles (pieces, points + 2) of all points, and beside both ends, where series are checked."""
+    def check_angles(self):
+        """Crank angles (pieces, points + 2) at which series are checked: just inside both ends, and at all points."""
         return np.column_stack([self.low + JUMP_OFFSET, self.angle, self.high - JUMP_OFFSET])
 
     def resolved(self, values, evaluate, rough):
-        """Halve pieces until series of functions are accurate; return them, their values, and a mask of rough pieces.
+        """Halve pieces until series are accurate; return pieces, their values, and a mask of those still to be halved.
 
         Parameters
         ----------
         values : array (functions, pieces, points + 2)
-            At the angles `checked`.
+            At the angles `check_angles`.
         evaluate : function
             From crank angles (P, points + 2) and the designs (P,) of these pieces to values.
         rough : function
@@ -293,46 +293,45 @@ class Pieces:
         pieces, errors = self, self.errors(values)
         most = self.sums(np.ones(len(self.half), int)) + MAX_UNRESOLVED * self.period / TURN
         for _ in range(MAX_HALVINGS):
-            rough_ones = rough(pieces, errors, values) & pieces.can_split
-            marked = rough_ones & (pieces.sums(rough_ones.astype(int)) <= most)[pieces.owner]
+            unresolved = rough(pieces, errors, values) & pieces.can_split
+            marked = unresolved & (pieces.sums(unresolved.astype(int)) <= most)[pieces.owner]
             if not marked.any():
                 break
             parts = 1 + marked
             new, pieces = np.repeat(marked, parts), pieces.split(marked)
             values, errors = np.repeat(values, parts, axis=1), np.repeat(errors, parts, axis=1)
-            values[:, new] = evaluate(pieces.checked[new], pieces.owner[new])
+            values[:, new] = evaluate(pieces.check_angles[new], pieces.owner[new])
             errors[:, new] = _errors(values[:, new], pieces.half[new], self.count)
-        return pieces, values, rough_ones
+        return pieces, values, unresolved
 
     def errors(self, values):
         """Estimate of the error of each series: last coefficients, and misfit at both ends, (..., pieces)."""
         return _errors(values, self.half, self.count)
 
-    def turning(self, values, level):
+    def turning(self, values, rounding):
         """Crank angles inside pieces at which a function turns, and whether it turns at the start of each piece.
 
         Parameters
         ----------
         values : array (1 or 2, pieces, points)
             A function, or the components of a vector, whose magnitude turns.
-        level : array (pieces,)
+        rounding : array (pieces,)
             Range of values that counts as rounding.
 
         Returns
         -------
         angle, piece : array (K,)
         starts : array (pieces,) of bool
-            Whether it turns at the start of a piece, or is constant in this piece or the one before. The last piece
-            is before the first.
+            Whether it turns at a piece's start, or is constant in it or in the one before (for the first, the last).
         """
         series = rule(self.count).series @ np.swapaxes(values, 1, 2)
-        large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * level
+        large = np.maximum.accumulate(np.abs(series[:, ::-1]), axis=1)[:, ::-1] > CHOPPED * rounding
         series = [np.where(large, series, 0.0)]
         series += [rule(self.count).derived @ series[0]]
         series += [rule(self.count).derived @ series[1]]
         slopes = _slope_of_size if len(values) == 2 else _slope
         slope, bend = slopes(*(rule(self.count).many @ rows for rows in series))
-        moves = (np.ptp(values, axis=2) > level).any(axis=0)
+        moves = (np.ptp(values, axis=2) > rounding).any(axis=0)
         place, piece = self._roots(slope, bend, moves, slopes, series)
         rises = np.where(moves, np.sign(slope[[0, -1]]), 0.0)
         return self.angle_at(piece, place), piece, rolled(rises[1], 1) * rises[0] <= 0.0
@@ -342,20 +341,21 @@ class Pieces:
         return self._zeros(self.series(values))
 
     def _zeros(self, series):
-        series = [series[None], product(series.T, rule(self.count).derived).T[None]]
-        value, slope = (product(rows[0].T, rule(self.count).many).T for rows in series)
+        series = [series[None], matrix_product(series.T, rule(self.count).derived).T[None]]
+        value, slope = (matrix_product(rows[0].T, rule(self.count).many).T for rows in series)
         everywhere = np.ones(value.shape[1], bool)
         return self._roots(value, slope, everywhere, lambda *parts: [part[0] for part in parts], series)
 
     def _roots(self, dense, slope, asked, function, series):
         """Places and pieces of the roots of functions given at the dense places (places, pieces), by Newton.
 
-        `function` returns value and slope from the values of all series; it also finds two roots between dense places.
+        `function` turns the values of all series into value and slope. Where the slope changes its sign, two roots
+        between neighbouring dense places are found too.
         """
         places = rule(self.count).places
 
         def evaluate(piece, place):
-            own = waves(self.count, place)
+            own = chebyshev_values(self.count, place)
             return function(*(np.einsum("ckn,kn->cn", rows[:, :, piece], own) for rows in series))
 
         changes = np.signbit(dense[:-1]) != np.signbit(dense[1:])
@@ -385,8 +385,8 @@ class Pieces:
         return place, piece
 
 
-def product(values, matrix):
-    """Values (..., N) times a matrix (M, N); by BLAS a row would depend on its neighbours."""
+def matrix_product(values, matrix):
+    """Values (..., N) times a matrix (M, N); by BLAS the rounding of a row would depend on other rows."""
     return np.einsum("...n,mn->...m", values, matrix)
 
 
@@ -396,18 +396,18 @@ def rolled(values, step):
 
 
 def highest(height, group):
-    """Index of the highest of each group."""
+    """Index of the highest value in each group of values."""
     order = np.lexsort((height, group))
     return order[np.flatnonzero(np.diff(group[order], append=np.max(group, initial=0) + 1))]
 
 
-def waves(count, place):
+def chebyshev_values(count, place):
     """Values (count, K) of the Chebyshev polynomials at places in [-1, 1]; those outside by rounding are clipped."""
     return np.cos(np.arange(count)[:, None] * np.arccos(np.clip(place, -1.0, 1.0)))
 
 
 def _errors(values, half, count):
-    found = product(values[..., 1:-1], rule(count).check)
+    found = matrix_product(values[..., 1:-1], rule(count).check)
     shift = JUMP_OFFSET / half * [1.0, -1.0]
     misfit = found[..., TAIL_TERMS:-2] + shift * found[..., -2:] - values[..., [0, -1]]
     return np.fmax(np.abs(found[..., :TAIL_TERMS]).max(axis=-1), np.abs(misfit).max(axis=-1))

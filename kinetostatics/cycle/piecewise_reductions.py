@@ -62,8 +62,8 @@ def _weights_of_magnitudes(pieces, values):
 
 def gained(pieces, values):
     """Integral at each point of values less their mean over the period, from the start of the period."""
-    mean = pieces.sums(pieces.whole(values)) / pieces.period
-    return pieces.integrated(values - mean[pieces.owner, None])
+    mean = pieces.sums(pieces.piece_integrals(values)) / pieces.period
+    return pieces.integral_from_start(values - mean[pieces.owner, None])
 
 
 def _peaks(pieces, reduction, values, vector):
@@ -102,7 +102,7 @@ def _errors_of_peaks(pieces, values, errors, sides, vector):
 def estimated(pieces, output, values, vector=False):
     """Numbers (designs,) of an `Output`, and whether they are uncertain.
 
-    `values` (pieces, points + 2) are at `Pieces.checked`; of a `vector` its magnitude, or for a peak its square.
+    `values` (pieces, points + 2) are at `Pieces.check_angles`; of a `vector` its magnitude, or for a peak its square.
     """
     errors = np.where(pieces.can_split, ERROR_FACTOR * pieces.errors(values), 0.0)
     inner = values[:, 1:-1]
@@ -162,5 +162,5 @@ def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
                 marked |= error * share > goal / TYPICAL_UNCERTAIN_PIECES * size
         return marked
 
-    pieces, values, _ = pieces.resolved(rows(pieces.checked, pieces.owner), rows, rough)
+    pieces, values, _ = pieces.resolved(rows(pieces.check_angles, pieces.owner), rows, rough)
     return pieces, dict(zip(sides, values, strict=True))

@@ -42,7 +42,7 @@ def paths(turn, pieces, values, rough, function, floor, size, cuts, scale):
     turn : Turn
     pieces : Pieces
     values : array (1 or 2, pieces, points + 2)
-        Values of the quantity, its square or its components, at `Pieces.checked`; NaN without correct digits.
+        Values of the quantity, its square or its components, at `Pieces.check_angles`; NaN without correct digits.
     rough : array (pieces,) of bool
         Pieces that are not resolved.
     function : function
@@ -115,7 +115,7 @@ def _polished(turn, function, angle, floor):
 
 def _rough_candidates(turn, pieces, values, rough, function):
     """Candidates on unresolved pieces, by minimisation around points higher or lower than their neighbours."""
-    angle, value = pieces.checked.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
+    angle, value = pieces.check_angles.ravel(), (values[0] if len(values) == 1 else np.hypot(*values)).ravel()
     rises, falls = ((value > rolled(value, k)).astype(int) - (value < rolled(value, k)) for k in (1, -1))
     side = rises + falls  # of two equal points each has one
     top = np.flatnonzero((rises * falls >= 0) & (side != 0) & np.repeat(rough, pieces.count + 2))

@@ -289,7 +289,7 @@ class SampledOutput:
             some = {path: values[own] for path, values in numbers.items()}
             values, slopes = self._curves(some, changes[:, own], pieces.angle)
             for sample in range(samples.size):
-                alone, mask = pieces.some(np.arange(samples.size) == sample)
+                alone, mask = pieces.of_designs(np.arange(samples.size) == sample)
                 yield measures.PiecewiseCurve(values[mask], np.moveaxis(slopes[mask], 0, 1), alone, bool(self._vector))
 
     def _values(self, numbers):

@@ -1,8 +1,8 @@
 """A spring-loaded follower on a cam on the crank that evens out the torque of any machine at its design speed.
 
-The spring stores the energy that the machine returns over a turn, E = integral of T - mean(T). The cam relaxes it as E
-rises, so the motor gives only the mean torque. The equation of `spring_follower` includes the follower's own inertia,
-so no iteration is needed.
+The torque T drives the crank. Where it is above its mean, E = integral of T - mean(T) rises, and the spring gives this
+energy; it stores energy where E falls. So the motor gives only the mean torque. The equation of `spring_follower`
+includes the follower's own inertia, so no iteration is needed.
 """
 
 from dataclasses import dataclass, replace
@@ -54,7 +54,7 @@ class TorqueBalancing:
     stretch : (float, float)
         Least and largest stretch of the spring, m; includes the effect of the follower's weight.
     reserve : float
-        Least ratio of the spring force to the force for contact, 2 omega sqrt(m E''); above 1.
+        Least ratio of spring force to force for contact, 2 omega sqrt(m E''), over the minima of the energy E; above 1.
     shaft_radius, roller_radius : float or None
         m, as given.
 
@@ -139,7 +139,7 @@ class TorqueBalancing:
 
     @cached_property
     def curvature_radius(self) -> Peak:
-        """Smallest radius of the pitch curve where it is convex, m, by polar angle of the cam."""
+        """Smallest radius of curvature of the convex parts of the pitch curve, m, and its polar angle on the cam."""
         disk = self.follower.disk
         sharpest = highest(lambda angle: 1.0 / disk.curvature_radius(angle), disk)
         return Peak(1.0 / sharpest.value, sharpest.angle)
@@ -211,7 +211,7 @@ OWNER = "torque_balancing_cam"
 UNEVENNESS_TOLERANCE = 1e-10
 """Negligible unevenness, relative to the largest term of the torque."""
 JUMP_TOLERANCE = 1e-6
-"""Largest jump of the torque across its mean, relative to the largest torque."""
+"""Largest change of the torque across its mean that is not a jump, relative to the largest torque."""
 ANGLE_BESIDE = 1e-9
 """Distance from a crossing of the mean, rad, for the test of a jump."""
 SWITCH_RULES = {"switches": checks.Number("rad", table=True)}
@@ -261,9 +261,9 @@ def torque_balancing_cam(
     base_radius : float, optional
         Least coordinate of the roller centre along the guide, m; by default the smallest that keeps `pressure_angle`.
     pressure_angle : float
-        Largest pressure angle, rad; with `base_radius` it is a limit.
+        Largest allowed pressure angle, rad; a `base_radius` for which it is larger is an error.
     roller_radius : float, optional
-        m; an error if the roller would undercut the cam.
+        Radius of the roller, m; a roller that would undercut the cam is an error.
     shaft_radius : float, optional
         m. The default base radius also keeps the cam off the shaft; with a smaller one the report warns.
     pin, label : str
@@ -278,7 +278,7 @@ def torque_balancing_cam(
     Raises
     ------
     ParameterError
-        The torque is already even, jumps across its mean, or the scene has several designs or no constant speed. The
+        The torque is already even or jumps across its mean. The scene has several designs or no constant speed. The
         spring is too soft for contact or too stiff for the travel; the message gives the bounds. The pressure angle or
         the roller does not fit. There is friction at O, which the contact force would increase.
 
@@ -297,15 +297,15 @@ def torque_balancing_cam(
         switches = np.atleast_1d(checks.check_values(OWNER, SWITCH_RULES, {"switches": switches})["switches"])
     torque, energy = _energy(scene, switches)
     moving = values["mass"] * float(scene.crank_speed) ** 2
-    swing, peak, lows = _energy_swing(torque, energy)
+    stored, peak, lows = _energy_range(torque, energy)
     travel = values["travel"]
-    stiffness = values.get("stiffness", 2.0 * swing / (3.0 * travel * travel))
-    least = swing / (stiffness * travel) - travel / 2.0
+    stiffness = values.get("stiffness", 2.0 * stored / (3.0 * travel * travel))
+    least = stored / (stiffness * travel) - travel / 2.0
     if least <= 0.0:
         raise ParameterError(
-            f"{OWNER}: a spring of {stiffness:.6g} N/m stores more than the {swing:.6g} J of the machine on a travel "
-            f"of {travel:.6g} m without preload. Choose less than {2.0 * swing / travel**2:.6g} N/m, or a travel "
-            f"below {np.sqrt(2.0 * swing / stiffness):.6g} m"
+            f"{OWNER}: a spring of {stiffness:.6g} N/m stores more than the {stored:.6g} J of the machine on a travel "
+            f"of {travel:.6g} m without preload. Choose less than {2.0 * stored / travel**2:.6g} N/m, or a travel "
+            f"below {np.sqrt(2.0 * stored / stiffness):.6g} m"
         )
     level = peak + 0.5 * stiffness * least * least
     reserve, low = min((spring_follower.reserve(energy, low, level, moving, stiffness), low) for low in lows)
@@ -329,7 +329,7 @@ def torque_balancing_cam(
     loaded = replace(scene, mechanism=mechanism, loads=(*scene.loads, spring))
     radii = {name: values.get(name) for name in ("shaft_radius", "roller_radius")}
     ends = least, least + travel
-    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, swing, ends, reserve, **radii)
+    return TorqueBalancing(loaded, scene, follower, spring, torque.mean, stored, ends, reserve, **radii)
 
 
 def _parse_values(scene, **given):
@@ -366,7 +366,7 @@ def _energy(scene, switches):
     return torque, torque.plus(-torque.mean).integral
 
 
-def _energy_swing(torque, energy):
+def _energy_range(torque, energy):
     """Range and peak of the machine's energy, J, and the crank angles of its minima."""
     mean = torque.mean
     size = float(np.max(np.abs(torque(turn_angles(torque.edges, ANGLE_COUNT)))))

@@ -95,7 +95,7 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
         if factor == 1.0 and (size < ENERGY_TOLERANCE or (near is None and size < 1e-10 and slow)):
             if start is not None and not far > 0.0:
                 raise StandstillError(pieces.edges[-1 if driven.direction > 0.0 else 0])
-            stable = start is not None or driven.direction * pieces.total(linear.growth) < 0.0
+            stable = start is not None or driven.direction * pieces.whole_integral(linear.growth) < 0.0
             return (energy, far, linear) if stable else None
         near = linear if size < MAX_NEAR_CHANGE and not slow else None
         before = size
@@ -108,14 +108,14 @@ def _linear_solution(pieces, growth, rest, start, direction):
     It begins with `start` at the end where the motion enters, or is periodic.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        raised = pieces.integral(growth)
-        gathered = pieces.integral(rest * np.exp(-raised))
-        ends = np.exp(pieces.whole(growth))
-        added = ends * pieces.whole(rest * np.exp(-raised))
+        raised = pieces.integral_in_piece(growth)
+        gathered = pieces.integral_in_piece(rest * np.exp(-raised))
+        ends = np.exp(pieces.piece_integrals(growth))
+        added = ends * pieces.piece_integrals(rest * np.exp(-raised))
     if not (np.isfinite(ends).all() and np.isfinite(added).all()):
         return None
     chain = list(zip(ends.tolist(), added.tolist(), strict=True))
-    whole = pieces.total(growth)
+    whole = pieces.whole_integral(growth)
     if start is None and not abs(whole) > 1e-15:
         return None
     if direction > 0.0 if start is not None else whole < 0.0:
@@ -196,7 +196,7 @@ def refine(driven, pieces, found, kinks, rows, unresolved, solve):
 def _unresolved(driven, pieces, found):
     """Mask of the pieces whose series are not resolved and that can be halved."""
     energy, _, (state, inertia, speed, net, growth, _) = found
-    wide = np.abs(pieces.whole(growth)) > MAX_GROWTH_EXPONENT
+    wide = np.abs(pieces.piece_integrals(growth)) > MAX_GROWTH_EXPONENT
     rounding = max(SPEED_ROUNDING * np.abs(driven.motor_slope(speed) * speed).max(), EPSILON * energy.max())
     floor = max(10.0 * TAIL * max(np.abs(state.torque).max(), np.abs(net + state.torque).max()), rounding)
     rough = pieces.tails(net) * weights(pieces) > floor

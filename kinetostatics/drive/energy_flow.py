@@ -125,8 +125,8 @@ def energy_flow(run) -> EnergyFlow:
     for name, item in zip(numbered_titles(run.scene.loads), run.scene.loads, strict=True):
         torque = replace_unchecked(moving, loads=(item,), friction=NO_FRICTION).solve(angle).load_torque
         torque = np.broadcast_to(torque, angle.shape).reshape(shape)
-        energy = zero_if_rounding(pieces.total(torque) * run.direction, pieces.total(np.abs(torque)))
-        returned = swing(pieces.integrated(torque)) if energy == 0.0 and np.any(torque) else np.nan
+        energy = zero_if_rounding(pieces.whole_integral(torque) * run.direction, pieces.whole_integral(np.abs(torque)))
+        returned = swing(pieces.integral_from_start(torque)) if energy == 0.0 and np.any(torque) else np.nan
         parts.append(Part(name, LOAD, energy / run.turns, returned))
     for joint in run.scene.friction.acting:
         parts.append(Part(f"friction {joint}", JOINT, run.friction_energy_per_turn_at(joint)))

@@ -103,7 +103,7 @@ def flywheel(scene, fluctuation, motor=None, *, engine=None) -> Flywheel:
     pieces, _ = resolve_and_hint(driven, speed)
     speeds = np.full(pieces.angle.shape, speed)
     state = driven.at_acceleration(pieces.angle, speeds if driven.by_speed else None, 0.0)
-    spare = pieces.total(state.torque) / driven.period - state.torque
-    gained = pieces.integrated(spare) - 0.5 * speed * speed * state.inertia
+    spare = pieces.whole_integral(state.torque) / driven.period - state.torque
+    gained = pieces.integral_from_start(spare) - 0.5 * speed * speed * state.inertia
     energy = pieces.largest(gained)[0] + pieces.largest(-gained)[0]
     return Flywheel(energy / (wanted * speed * speed), energy, wanted, note=resolution_note(scene))

@@ -108,8 +108,8 @@ class DrivenMachine:
             )
         self._slip: Any = SlipDirections.of(self.scene) if self.scene.friction.acting else None
         if self._slip is not None:
-            rubs = tuple(replace_unchecked(rub, sense=1.0) for rub in self.scene.friction.rubs)
-            friction = replace_unchecked(self.scene.friction, rubs=rubs)
+            by_joint = tuple(replace_unchecked(item, sense=1.0) for item in self.scene.friction.by_joint)
+            friction = replace_unchecked(self.scene.friction, by_joint=by_joint)
             self._friction_scene = replace_unchecked(self.scene, friction=friction)
             self._last_solution: tuple[Any, ...] = (None,)
             self._last_senses: tuple[Any, ...] = (None,)

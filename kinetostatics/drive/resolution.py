@@ -81,7 +81,7 @@ def resolved(driven, speed):
         level = np.maximum(TAIL * np.abs(torque).max(), floor)
         return (pieces.tails(torque) * weights(pieces) > level) | (pieces.tail(inertia) > TAIL)
 
-    pieces, values, unresolved = pieces.resolved(evaluate(pieces.checked), evaluate, rough)
+    pieces, values, unresolved = pieces.resolved(evaluate(pieces.check_angles), evaluate, rough)
     if unresolved.any() or np.any(2.0 * pieces.half < MIN_RESOLVED_WIDTH * driven.period):
         _require_resolved(driven, pieces, values[0, :, 1:-1])
     return pieces, kinks
@@ -128,7 +128,7 @@ def weights(pieces):
 
 def _require_resolved(driven, pieces, torque):
     """Refuse a load torque that the pieces do not resolve: it grows without bound."""
-    size = np.abs(pieces.whole(np.abs(torque)))
+    size = np.abs(pieces.piece_integrals(np.abs(torque)))
     lost = pieces.half[:, 0] * pieces.tails(torque)
     if lost.sum() > MAX_UNRESOLVED * size.sum():
         worst = int(np.argmax(lost))

@@ -191,7 +191,7 @@ class Running:
     @cached_property
     def duration(self):
         """Time of the period, s."""
-        return abs(self._pieces.total(1.0 / self._speed))
+        return abs(self._pieces.whole_integral(1.0 / self._speed))
 
     @cached_property
     def mean_speed(self):
@@ -239,7 +239,7 @@ class Running:
         It falls along rising crank angles where the crank turns clockwise.
         """
         turned = np.mod(self.direction * self.crank_angle, self.period)
-        series = self._pieces.series(self._pieces.integrated(1.0 / np.abs(self._speed)))
+        series = self._pieces.series(self._pieces.integral_from_start(1.0 / np.abs(self._speed)))
         if self.direction > 0:
             return read_only(self._pieces.evaluate(series, turned))
         after = self.duration - self._pieces.evaluate(series, self.period - turned)
@@ -400,8 +400,8 @@ class Running:
     def energy_per_turn(self):
         """Energy of the motor at its shaft in a turn, J."""
         torque = self._transmission * self._motor_torque(self._speed)
-        energy = self._pieces.total(self._driven.direction * torque)
-        flowing = self._pieces.total(np.abs(torque) + np.abs(self._state.torque))
+        energy = self._pieces.whole_integral(self._driven.direction * torque)
+        flowing = self._pieces.whole_integral(np.abs(torque) + np.abs(self._state.torque))
         return zero_if_rounding(energy, flowing) / self.turns
 
     @cached_property
@@ -417,7 +417,7 @@ class Running:
                 "air_gap_energy_per_turn: only an induction motor, Motor.kloss, has an air gap that it knows"
             )
         power = self._motor_torque(self._speed) * (self.motor.field_speed if self.motor else 0.0)
-        return self._pieces.total(power / np.abs(self._speed)) / self.turns
+        return self._pieces.whole_integral(power / np.abs(self._speed)) / self.turns
 
     @property
     def has_air_gap(self):
@@ -446,12 +446,12 @@ class Running:
     def rms_motor_torque(self):
         """Root mean square over time of the motor's torque at its shaft, N m; it determines the heating."""
         square = self._motor_torque(self._speed) ** 2
-        return math.sqrt(self._pieces.total(square / np.abs(self._speed)) / self.duration)
+        return math.sqrt(self._pieces.whole_integral(square / np.abs(self._speed)) / self.duration)
 
     @cached_property
     def rms_power(self):
         """Root mean square over time of the motor's power, W."""
-        return math.sqrt(self._pieces.total(self._powers**2 / np.abs(self._speed)) / self.duration)
+        return math.sqrt(self._pieces.whole_integral(self._powers**2 / np.abs(self._speed)) / self.duration)
 
     @cached_property
     def peak_power(self):
@@ -466,7 +466,8 @@ class Running:
     @cached_property
     def load_energy_per_turn(self):
         """Energy that weight and loads take from the crank in a turn, without friction, J."""
-        return self._pieces.total(self._driven.without_friction(self._pieces.angle, self._speed).torque) * self._forward
+        torque = self._driven.without_friction(self._pieces.angle, self._speed).torque
+        return self._pieces.whole_integral(torque) * self._forward
 
     @property
     def friction_energy_per_turn(self):
@@ -476,7 +477,7 @@ class Running:
     def friction_energy_per_turn_at(self, joint):
         """Energy lost by friction in a turn at a joint, named as in `friction`, J; 0 without friction."""
         lost = self._at_points.friction_loss_at(joint).reshape(self._speed.shape)
-        return self._pieces.total(lost / self._speed) * self._forward
+        return self._pieces.whole_integral(lost / self._speed) * self._forward
 
     @property
     def mean_friction_loss(self):
@@ -533,7 +534,7 @@ class Running:
 
     def _motor_torque(self, speed):
         if self.motor is None:
-            return 0.0 * speed + self._pieces.total(self._state.torque) / self.period
+            return 0.0 * speed + self._pieces.whole_integral(self._state.torque) / self.period
         return self.motor.torque(self.motor.transmission * speed)
 
     @property

@@ -32,7 +32,7 @@ def solve_near(driven, pieces, guess):
     for halving in range(MAX_STIFF_HALVINGS + 1):
         if halving:
             pieces = pieces.split(pieces.can_split)
-        growth = np.abs(pieces.whole(linearise(driven, pieces, guess(pieces)).growth))
+        growth = np.abs(pieces.piece_integrals(linearise(driven, pieces, guess(pieces)).growth))
         parts = np.ceil(np.fmin(growth / MAX_GROWTH_EXPONENT, MAX_PIECES + 1.0)).astype(int)
         if parts.max() > 1 and parts.sum() <= MAX_PIECES:
             spans = zip(pieces.edges[:-1], pieces.edges[1:], parts, strict=True)
@@ -58,7 +58,7 @@ def settle_from_above(driven, pieces, start):
     """
     direction, turns, inertia = driven.direction, 0, driven.inertia(pieces.angle)
     growth = linearise(driven, pieces, 0.5 * inertia * start * start).growth
-    share = float(np.abs(pieces.whole(growth)).sum())
+    share = float(np.abs(pieces.piece_integrals(growth)).sum())
     march = March(driven, 0.0, 2.0 * direction * abs(start))
     while turns < MAX_TURNS and share <= MAX_GROWTH:
         last, turns = march.energy, turns + 1
@@ -311,14 +311,14 @@ def _under_constant_torque(driven, pieces, speed):
     for _ in range(MAX_FRICTION_UPDATES):
         state = driven.at_acceleration(pieces.angle, driven.direction / slow, acceleration)
         inertia, before = driven.flywheel + state.inertia, slow
-        driven.constant_torque = pieces.total(state.torque) / driven.period
-        gained = pieces.integrated(driven.constant_torque - state.torque)
+        driven.constant_torque = pieces.whole_integral(state.torque) / driven.period
+        gained = pieces.integral_from_start(driven.constant_torque - state.torque)
         gained = gained + pieces.largest(-gained)[0]
-        scale = 0.5 * speed * speed * pieces.total(inertia) / driven.period
+        scale = 0.5 * speed * speed * pieces.whole_integral(inertia) / driven.period
 
         def excess_speed(size, inertia=inertia, gained=gained, scale=scale):
             slowness = np.sqrt(0.5 * inertia / (gained + scale * math.exp(size)))
-            return driven.period / pieces.total(slowness) - speed
+            return driven.period / pieces.whole_integral(slowness) - speed
 
         low = next((size for size in (-5.0, -12.0, -25.0) if excess_speed(size) < 0.0), None)
         if low is None:

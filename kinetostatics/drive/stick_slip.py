@@ -466,5 +466,5 @@ def _beside_rest(driven, angle, length, energy, count):
 def _stretch(driven, root, angle, slowness, speed, lost):
     """Stretch of pieces in order of the motion, from values (pieces, points): rates by the place, and speed."""
     pieces = Pieces(2.0 * np.arange(len(speed) + 1.0) - 1.0, speed.shape[1])
-    rows = [pieces.series(part) for part in (pieces.integral(slowness), speed, pieces.integral(lost))]
+    rows = [pieces.series(part) for part in (pieces.integral_in_piece(slowness), speed, pieces.integral_in_piece(lost))]
     return Stretch(np.full(len(speed), driven.direction), np.full(len(speed), root), angle, *rows)

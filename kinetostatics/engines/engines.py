@@ -20,13 +20,13 @@ from .program import program_of
 
 @dataclass(frozen=True)
 class Kernels:
-    """The kernels run directly; `way`: another method for the positions, see `Dynamics`."""
+    """The kernels run directly; `placement_method`: another method for the positions, see `Dynamics`."""
 
-    way: Any = None
+    placement_method: Any = None
 
     def values(self, state, names=None):
         """Values by name; None: closure and all results of the groups."""
-        state = state if self.way is None else replace(state, way=self.way)
+        state = state if self.placement_method is None else replace(state, placement_method=self.placement_method)
         names = resolved_names(state) if names is None else names
         behind, found = required_groups(state.mechanism), {}
         for name in names:

@@ -78,7 +78,7 @@ class Program:
     def unrecorded(self):
         """Names of the user's code that outputs depend on and that could not be recorded."""
         tables = (table for table in self.recording.tables if not self._rows_needed.isdisjoint(table.rows))
-        return tuple(table.moved_by for table in tables if table.moved_by)
+        return tuple(table.user_code for table in tables if table.user_code)
 
     @cached_property
     def _plain(self):
@@ -226,7 +226,7 @@ def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Prog
     user's group or load cannot be recorded.
     """
     structure, leaves = state.apart
-    if not leaves.lasting or state.way is not None:
+    if not leaves.lasting or state.placement_method is not None:
         if lasting:
             raise NotGivenError(f"{state.mechanism.name} has parts that may change unnoticed, so no recording is valid")
         return _recorded(state, structure, quantities, sizes), leaves
@@ -245,7 +245,7 @@ def program_of(state, quantities=None, sizes=False, lasting=False) -> tuple[Prog
 
 def _recorded(state, structure, quantities, sizes):
     try:
-        return Program(record(structure, quantities, sizes, state.way))
+        return Program(record(structure, quantities, sizes, state.placement_method))
     except QuantityError:
         raise
     except (TypeError, AttributeError) as error:

@@ -72,20 +72,20 @@ class Gaps:
 
 
 WITHOUT_GAPS = ("closure", *FRICTION_CHECKS)
-"""Quantities that report gaps themselves, and so remain numbers there."""
+"""Quantities that report where a group is open, and so have values there."""
 
 
 class Table(NamedTuple):
     """Rows of values that ``compute(motion, leaves)`` gives at the crank angles before the program runs.
 
     `rows` are the row indices, `names` the name, the order of derivative by the crank angle and the unit of each.
-    `moved_by` names user code whose derivatives by the parameters are unknown; "" if there is none. `of` is the cam,
+    `user_code` names user code whose derivatives by the parameters are unknown; "" if there is none. `of` is the cam,
     or the index of the load, that uses them.
     """
 
     rows: range
     compute: Callable[[Any, Any], Any]
-    moved_by: str = ""
+    user_code: str = ""
     names: tuple = ()
     of: str | int = ""
 
@@ -98,9 +98,9 @@ class Table(NamedTuple):
 class Recording:
     """The arithmetic of some quantities for all scenes of one structure.
 
-    `outputs` are nodes or numbers, components of a vector one after the other. `widths` are the rows of each quantity:
-    1 for a scalar, 2 for a vector, one per group for the closure. `parameters` has a node for each number of a scene,
-    in the order of its leaves; `inputs` are those of `ErrorBounds`.
+    `outputs` are nodes or numbers, components of a vector one after the other. `widths` are the numbers of rows of the
+    quantities: 1 for a scalar, 2 for a vector, one per group for the closure. `parameters` has a node for each number
+    of a scene, in the order of its leaves. `inputs` give the errors of inexact nodes, see `ErrorBounds`.
     """
 
     quantities: tuple[str, ...]
@@ -131,18 +131,18 @@ class Recording:
         return operations(self.outputs)
 
     @property
-    def rows(self):
+    def row_count(self):
         """Number of rows of the tables that the outputs need."""
         return max((node.arguments[0] + 1 for node in needed(self.outputs) if node.operation == "table"), default=0)
 
 
-def record(structure, quantities, sizes=False, way=None) -> Recording:
+def record(structure, quantities, sizes=False, placement_method=None) -> Recording:
     """Record the arithmetic of some quantities of a structure, see `parameter_tree.flatten`.
 
     `quantities` are names as for `quantities.components`; None: closure and all results of the groups. `sizes` records
-    magnitudes of vectors instead of their components; `way` is another method for the positions, see `Dynamics`.
+    magnitudes of vectors instead of their components; `placement_method` is that of `Dynamics`.
     """
-    recorder = Recorder(structure, way, SimplifiedGraph())
+    recorder = Recorder(structure, placement_method, SimplifiedGraph())
     if quantities is None:
         quantities = resolved_names(recorder.recorded)
     found = [(sizes_of if sizes else components)(recorder.recorded, name) for name in quantities]
@@ -167,9 +167,9 @@ def record(structure, quantities, sizes=False, way=None) -> Recording:
 
 
 class Recorder:
-    """Replaces the numbers of a structure by nodes of a graph, by default a new plain `Graph`."""
+    """Replaces the numbers of a structure by nodes of a graph: a new plain `Graph` unless one is given."""
 
-    def __init__(self, structure, way=None, graph=None):
+    def __init__(self, structure, placement_method=None, graph=None):
         self.graph = Graph() if graph is None else graph
         self.parameters: list[Node] = []
         self.tables: list[Table] = []
@@ -184,7 +184,7 @@ class Recorder:
         for guide in mechanism.guides.values():
             rounded = (part for part in guide.rounded if isinstance(part, Node))
             self.inputs |= dict.fromkeys(rounded, lambda bounds: Error(1.0, None))
-        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), friction, sense, way)
+        idle = Dynamics(mechanism, self.angle, speed, acceleration, (), friction, sense, placement_method)
         self.recorded = replace(idle, loads=tuple(self._load(load, place, idle) for place, load in enumerate(items)))
 
     def _parameter(self):
@@ -196,25 +196,25 @@ class Recorder:
         self._arrays += 1
         return self._tabled((("value", 0, ""),), lambda motion, leaves: [leaves.tables[place]])[0]
 
-    def _tabled(self, names, compute, moved_by="", of=""):
+    def _tabled(self, names, compute, user_code="", of=""):
         """Nodes of the rows of a new table."""
         rows = range(self._rows, self._rows + len(names))
         self._rows = rows.stop
-        self.tables.append(Table(rows, compute, moved_by, names, of))
+        self.tables.append(Table(rows, compute, user_code, names, of))
         found = list(map(self.graph.row, rows))
 
         def unproven(bounds):
             raise NotGivenError(
-                f"no bound can be given: {moved_by} does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
+                f"no bound can be given: {user_code} does more than arithmetic with sin, cos and sqrt of `arithmetic`, "
                 "so its rounding is unknown"
             )
 
-        if moved_by:
+        if user_code:
             self.inputs.update(dict.fromkeys(found, unproven))
         return list(map(_nodes, found))
 
     def _with_cam(self, group, place):
-        """The group, with its cam's values from a table if the cam takes plain numbers only."""
+        """The group; its cam's values are from a table if the cam's code does not run on recorded numbers."""
         if not hasattr(group, "cam") or self._is_elementwise(
             group.cam, lambda angle: group.cam.polar(angle, ray(angle))
         ):
@@ -229,7 +229,7 @@ class Recorder:
         return group
 
     def _load(self, load, place, idle):
-        """The load, with its values from a table if it takes plain numbers only."""
+        """The load; its values are from a table if its code does not run on recorded numbers."""
         if getattr(load, "STROKE", False):
             load = replace_unchecked(load, ends=self._stroke(load, place, idle))
         if not isinstance(load, Load):
@@ -249,8 +249,7 @@ class Recorder:
         """Coordinates of the dead centres of a load's slider, at their crank angles from a table.
 
         The angles count as constants: the coordinate has an extremum there, so an error of the angle does not change
-        it to first order, and derivatives are exact.
-        For a cam from a table the coordinates come from a table themselves.
+        it to first order, and derivatives are exact. For a cam from a table the coordinates come from a table too.
         """
         mechanism, is_tabled = idle.mechanism, _has_tabled_cam(idle.mechanism)
         rows = self._tabled(
@@ -287,7 +286,7 @@ class Recorder:
         return values
 
     def _read(self, table, unit, place, idle):
-        """Values of a table over the crank angle; of another, a function of the motion by a piece found beforehand."""
+        """Values of a table over the crank angle; for others, a function of the motion on a piece chosen before."""
 
         def item(motion):
             return motion.loads[place].value_now
@@ -362,7 +361,7 @@ def _has_tabled_cam(mechanism):
 
 
 def _error_of_piece(bounds, kinks, travel, rate, own=None):
-    """Error of a value of a table: the exact place may be in the next piece, or on the other stroke; `own` is added."""
+    """Error of a table's value: its rounding, `own`, and a change of piece or stroke, from `kinks` (`kink_bounds`)."""
     change, jump, near, distance = kinks
     bounds.look_at((travel, rate))
     jumps = plus(plus(jump / UNIT_ROUNDOFF, own), 0.0 / bounds.above(near, bounds.total(rate)))

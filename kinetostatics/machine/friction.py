@@ -118,7 +118,7 @@ class SlotFriction(SlidingFriction):
 
 @dataclass(frozen=True, eq=False)
 class RollerFriction(checks.Checked, Batched):
-    """Friction of a cam roller in its pin and as it rolls, felt as a force along the profile.
+    """Friction of a cam roller in its pin, and rolling friction; both together are a force along the cam profile.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ class RollerFriction(checks.Checked, Batched):
     pin_radius, roller_radius : float or array
         m.
     rolling_arm : float or array, optional
-        Arm of rolling friction, m: distance of the cam's force ahead of the contact.
+        Arm of rolling friction, m: distance by which the cam's force acts ahead of the contact point.
 
     Raises
     ------
@@ -188,7 +188,7 @@ def _acts(friction):
 
 @dataclass(frozen=True, eq=False)
 class JointFriction(Batched):
-    """Friction at one joint; `sense`: sign of its motion (of a roller, of the crank) if it is known beforehand."""
+    """Friction at one joint; `sense` is the sign of its motion, for a roller of the crank's, if known beforehand."""
 
     joint: str
     friction: Any
@@ -200,7 +200,7 @@ class JointFriction(Batched):
     )
 
     def __post_init__(self):
-        """Skip checks: `friction_problems` makes them with the mechanism."""
+        """Check nothing: `friction_problems` checks the values together with the mechanism."""
 
     @property
     def PATH(self):  # noqa: N802 - as loads call it
@@ -209,26 +209,26 @@ class JointFriction(Batched):
 
 @dataclass(frozen=True, eq=False)
 class Frictions(Mapping, Batched):
-    """Friction of a mechanism by joint, a mapping; `passes` update the directions of reactions."""
+    """Friction by joint, a mapping; `passes` is the number of iterations of the directions of reactions."""
 
-    rubs: tuple[JointFriction, ...] = ()
+    by_joint: tuple[JointFriction, ...] = ()
     passes: int = PASSES_BY_SOLVER[0]
 
     __eq__, __hash__ = object.__eq__, object.__hash__
-    PATHS: ClassVar = {"rubs": ""}
-    RULES = checks.Rules("friction", rubs=checks.HasMembers((), "friction by joint"))
+    PATHS: ClassVar = {"by_joint": ""}
+    RULES = checks.Rules("friction", by_joint=checks.HasMembers((), "friction by joint"))
 
     def __post_init__(self):
-        """Skip checks: `friction_problems` makes them with the mechanism."""
+        """Check nothing: `friction_problems` checks the values together with the mechanism."""
 
     def __getitem__(self, name):
-        return {rub.joint: rub.friction for rub in self.rubs}[name]
+        return {item.joint: item.friction for item in self.by_joint}[name]
 
     def __iter__(self):
-        return (rub.joint for rub in self.rubs)
+        return (item.joint for item in self.by_joint)
 
     def __len__(self):
-        return len(self.rubs)
+        return len(self.by_joint)
 
     def __repr__(self):
         return repr(dict(self))
@@ -236,12 +236,12 @@ class Frictions(Mapping, Batched):
     @property
     def acting(self):
         """Friction by joint, without zero coefficients."""
-        return {rub.joint: rub.friction for rub in self.rubs if _acts(rub.friction)}
+        return {item.joint: item.friction for item in self.by_joint if _acts(item.friction)}
 
     @property
     def senses(self):
         """Sign of the motion by joint, if it is known beforehand."""
-        return {rub.joint: rub.sense for rub in self.rubs if rub.sense is not None}
+        return {item.joint: item.sense for item in self.by_joint if item.sense is not None}
 
 
 NO_FRICTION = Frictions()

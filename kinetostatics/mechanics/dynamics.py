@@ -57,17 +57,17 @@ class Dynamics(Motion):
 
     Attributes
     ----------
-    way : function, optional
-        ``way(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, for example by harmonic
-        series.
+    placement_method : function, optional
+        ``placement_method(mechanism, crank_angle)`` replaces the groups' closed forms for the placement, for example
+        by harmonic series.
     """
 
-    way: Callable[[Any, Any], Any] | None = None
+    placement_method: Callable[[Any, Any], Any] | None = None
 
     @cached_property
     def placement(self):
         """Joints and links by name, as kinematic coefficients."""
-        return (self.way or type(self.mechanism).place)(self.mechanism, self.crank_angle)
+        return (self.placement_method or type(self.mechanism).place)(self.mechanism, self.crank_angle)
 
     @cached_property
     def resolved(self):
@@ -153,7 +153,7 @@ class Dynamics(Motion):
     @cached_property
     def friction_solver(self):
         """Solver of the groups with friction; None without friction."""
-        return FrictionSolver(self.mechanism, self.friction, self.crank_sense) if self.friction.rubs else None
+        return FrictionSolver(self.mechanism, self.friction, self.crank_sense) if self.friction.by_joint else None
 
     @cached_property
     def friction_by_joint(self):
@@ -219,7 +219,7 @@ class Dynamics(Motion):
         """A force or moment by name, (..., N)."""
         scalars = self.resolved.scalars
         found = self._look_up("quantity", name, scalars)
-        if self.friction.rubs and not hasattr(found, "shape"):  # a constant is NaN too where friction jams
+        if self.friction.by_joint and not hasattr(found, "shape"):  # a constant is NaN too where friction jams
             found = found + 0.0 * scalars["balancing_torque"]
         return self._scalar(found)
 

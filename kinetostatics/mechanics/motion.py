@@ -123,7 +123,7 @@ class Motion:
         scene: tuple[Any, ...] = self.mechanism, self.crank_speed, self.crank_acceleration, self.loads
         if self.sense is not None:
             scene = (*scene, self.friction, self.sense)
-        elif self.friction.rubs:
+        elif self.friction.by_joint:
             scene = (*scene, self.friction)
         return (SceneParts, *flatten(scene, leaves)[1:]), leaves
 

@@ -232,7 +232,7 @@ def _integrals(pin, turn, most, power):
     mean, _, pieces, values = means(curves, turn, floor)
     place, piece = pieces.zeros(values[2, :, 1:-1])
     parts = Pieces(np.union1d(pieces.edges, pieces.angle_at(piece, place)), pieces.count)
-    moves = parts.whole(curves(parts.angle.ravel())[2].reshape(parts.angle.shape))
+    moves = parts.piece_integrals(curves(parts.angle.ravel())[2].reshape(parts.angle.shape))
     angle = np.cumsum([0.0, *moves])
     with np.errstate(invalid="ignore"):
         load = scale * np.power(mean[0] / mean[1], 1.0 / power) if most else 0.0

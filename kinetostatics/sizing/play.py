@@ -19,7 +19,7 @@ import numpy as np
 
 from ..cycle.extremes import extrema
 from ..cycle.means import TERM_ROUNDING, closed_turn, means
-from ..cycle.piecewise import JUMP_OFFSET, rule, waves
+from ..cycle.piecewise import JUMP_OFFSET, chebyshev_values, rule
 from ..errors import ParameterError
 from ..machine.cams.profile import POSITIVE
 from ..machine.links import Turning, Wrench, arm
@@ -283,7 +283,7 @@ class _Play:
         orders = [values @ own.series.T]
         for _ in range(2):
             orders.append(orders[-1] @ own.derived.T / half)
-        at_places = waves(pieces.count, places.ravel()).reshape(pieces.count, *places.shape)
+        at_places = chebyshev_values(pieces.count, places.ravel()).reshape(pieces.count, *places.shape)
         value, slope, bend = (np.einsum("fpc,cpk->pkf", part, at_places).reshape(-1, 5) for part in orders)
         self.knots = (pieces.middle[:, None] + half * places).ravel()
         both = np.column_stack([value, slope[:, :2]]), np.column_stack([slope, bend[:, :2]])

@@ -1,10 +1,10 @@
 """Accuracy of each value of a solution: proven rounding bounds, and uncertainty from uncertain inputs.
 
 The uncertainty is of first order: sensitivities f_i, exact derivatives of the recorded program, times the standard
-uncertainties u_i (JCGM 100:2008, section 5.1). A warning names the angles where the second order is not small. For
-independent normal inputs the second-order terms are 1/2 sum f_ij d_i d_j. They have the mean 1/2 sum f_ii u_i^2 and the
-variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note). The second order is the root of their mean square. All
-values are in the unit of the quantity.
+uncertainties u_i (JCGM 100:2008, section 5.1). A warning names the angles where the second order is not small. With
+independent normal deviations d_i of the inputs, the second-order terms are 1/2 sum f_ij d_i d_j. Their mean is 1/2 sum
+f_ii u_i^2, their variance 1/2 sum f_ij^2 u_i^2 u_j^2 (JCGM 100:2008, 5.1.2, note). The second order is the root of
+their mean square. All values are in the unit of the quantity.
 """
 
 import warnings
@@ -37,20 +37,20 @@ from .parameters import (
 MAX_SECOND_ORDER_SHARE = 0.1
 """Largest ratio of second to first order without a warning."""
 MEDIAN_SHARE = 0.01
-"""Smallest reference value of the first order, relative to its median over the crank angles."""
+"""The first order counts as at least this share of its median over the crank angles."""
 MAX_PAIRWISE_INPUTS = 3
 """Largest number of inputs whose pairs are all tried at once; with more, sums over all pairs are tried first."""
 
 
 class LargeSecondOrder(NamedTuple):
-    """Values with a second order that is not small: `values` of `of` crank angles, and the worst of them.
+    """Values with a second order that is not small: their number `values` of `total`, and the worst of them.
 
     `paths` are the one or two inputs with the largest second order there; the second order is NaN where the
     quantity has no value with these inputs changed.
     """
 
     values: int
-    of: int
+    total: int
     angle: float
     paths: tuple[str, ...]
     first: float
@@ -64,7 +64,7 @@ class LargeSecondOrder(NamedTuple):
             most = " and ".join(self.paths) + (" together" if len(self.paths) > 1 else "")
             found = f"first order {self.first:.2g} {unit}, second order {self.second:.2g}, mostly from {most}"
         where = f"at {np.degrees(self.angle):.9g} deg {found}; vary the inputs there, as ks.tolerances does"
-        places = f"which is not accurate at {self.values} of {self.of} crank angles"
+        places = f"which is not accurate at {self.values} of {self.total} crank angles"
         return Doubt(quantity, places, where, self.second / self.first if self.first > 0.0 else np.inf)
 
 
@@ -91,8 +91,8 @@ def doubt_text(doubts):
 
 
 @lru_cache(maxsize=64)
-def _codes(count):
-    """Integers of few bits whose pairwise differences (exclusive or) are all distinct."""
+def _sign_codes(count):
+    """Integers of few bits with distinct pairwise exclusive ors: no two pairs have equal signs in all sums."""
     codes: list[int] = []
     known: set[int] = set()
     for code in numbers():
@@ -121,7 +121,7 @@ def find_second_order(change, angle, first, rounding) -> LargeSecondOrder | None
 
         squares = {(path,): 0.5 * (alone[1.0][path] + alone[-1.0][path]) for path in paths}
         if len(paths) > MAX_PAIRWISE_INPUTS:
-            codes = dict(zip(paths, _codes(len(paths)), strict=True))
+            codes = dict(zip(paths, _sign_codes(len(paths)), strict=True))
             bits = [0, *(1 << row for row in range(max(codes.values()).bit_length()))]
             signs = ({path: -1.0 if code & bit else 1.0 for path, code in codes.items()} for bit in bits)
             sums = {("all", str(row)): products(part) for row, part in enumerate(signs)}
@@ -162,7 +162,7 @@ def _root_sum_square(part: Any, axis: Any = 0):
 
 
 def sensitivities(program, by, state, leaves, backend):
-    """Derivatives by quantity and path, shaped as the quantities, NaN where these are; `by` maps paths to leaves."""
+    """Derivatives by quantity and path, NaN where a quantity is; `by` maps each path to the index of its number."""
     rows = backend.run(program.by_parameters(tuple(by.values())), state, leaves)
     count = len(program.outputs)
     gaps, found = np.isnan(rows[:count]), rows[count:].reshape(count, len(by), *state.shape)
@@ -235,7 +235,7 @@ class Certainty(Parameters):
 
         Exact arithmetic gives values within this bound of the solution. Numbers given to constructors, as floats, and
         crank angles count as exact. Numbers derived from them, such as directions of guides and of gravity, have
-        bounds. The direction of a guide through two points counts as rounded once.
+        bounds. The direction of a guide through two points counts as one rounded operation.
 
         Parameters
         ----------
@@ -249,7 +249,7 @@ class Certainty(Parameters):
         array
             In the shape and unit of the quantity; vectors have a bound for each component. Infinite where nothing can
             be proven (a divisor may vanish, a sign is uncertain), NaN where there is no value. At a dead centre, where
-            a table over travel has another value on the way back, the bound is as large as that step.
+            a table over travel changes to its values for the way back, the bound is as large as that change.
 
         Raises
         ------
@@ -303,9 +303,9 @@ class Certainty(Parameters):
         Warns
         -----
         ConditionWarning
-            At some crank angle the second order of the inputs (including products) is more than a tenth of the first
-            order and more than a thousandth of its median. Or the quantity has no value with one or two inputs changed
-            by their uncertainty.
+            At some crank angle the second order of the inputs (products included) exceeds 0.1 of the first order, and
+            0.001 of the median of the first order. Or the quantity has no value with one or two inputs changed by their
+            uncertainty.
 
         Examples
         --------
@@ -321,7 +321,7 @@ class Certainty(Parameters):
         return found
 
     def with_doubt(self, quantity, inputs):
-        """The uncertainty, and a `Doubt` if it is too small, or None."""
+        """The uncertainty, and a `Doubt` if the uncertainty is too small, else None."""
         named = isinstance(inputs, Mapping) and all(isinstance(path, str) for path in inputs)
         checks.require("uncertainty", None if named else f"inputs must map paths to numbers, got {inputs!r}")
         checks.require("uncertainty", *(path_problem(self, path) for path in inputs if path not in self.places))
@@ -377,7 +377,7 @@ class Certainty(Parameters):
 
 
 def _magnitude_slope(vector, slope):
-    """Derivative of the magnitude of a vector from the vector's derivative; its magnitude where the vector is 0."""
+    """Derivative of a vector's magnitude from the vector's derivative, whose magnitude it is where the vector is 0."""
     (x, y), size = vector, np.hypot(*vector)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(size > 0.0, (x * slope[0] + y * slope[1]) / size, np.hypot(*slope))[()]

@@ -87,10 +87,10 @@ class PiecewiseTurns(NamedTuple):
     def refined(self, outputs):
         """Yield blocks of designs: their numbers, refined pieces, and values by `row_of` outputs."""
         vectors = {name: quantity(self.scene, name).vector for name in quantity_names(outputs)}
-        step = max(1, BLOCK_VALUES * self.designs // self.pieces.checked.size)
+        step = max(1, BLOCK_VALUES * self.designs // self.pieces.check_angles.size)
         for start in range(0, self.designs, step):
             some = np.arange(start, min(start + step, self.designs))
-            pieces, _ = self.pieces.some(np.isin(np.arange(self.designs), some))
+            pieces, _ = self.pieces.of_designs(np.isin(np.arange(self.designs), some))
 
             def evaluated(angle, designs, start=start):
                 return self.values(list(vectors), start + designs, angle)

@@ -540,7 +540,7 @@ class Solution(Certainty, WithSections, CrankshaftResults, PeriodMeans, ByName, 
     def dynamics(self):
         """The scene at its crank angles, as input of engines and kernels."""
         shared = dict(zip(SHARED_WITH_DYNAMICS, read_shared(self), strict=True))
-        return construct_unchecked(Dynamics, **shared, way=getattr(self.engine, "way", None))
+        return construct_unchecked(Dynamics, **shared, placement_method=getattr(self.engine, "placement_method", None))
 
     placement = property(lambda self: self.dynamics.placement, doc=Dynamics.placement.__doc__)
 

@@ -283,7 +283,7 @@ def _engine_of(pairs, engines):
         if len(engines) == 1:
             raise
         return engines[1], False
-    return "compiled", not any(program.recording.rows for program in programs)
+    return "compiled", not any(program.recording.row_count for program in programs)
 
 
 NEGLIGIBLE_SHARE = 1e-12

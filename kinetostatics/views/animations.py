@@ -76,7 +76,7 @@ def _moving_parts(ax, shape, solution, joints):
     The largest arrow of the reactions is as long as the crank; its size is in the title.
     """
     made = solution.mechanism
-    strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.signs(solution.loads, solution)]
+    strokes = [*shape.counterweights(solution), *shape.strokes(solution), *shape.symbols(solution.loads, solution)]
     links = [stroke_artist(ax, stroke, 1.0) for stroke in strokes]
     spots = [(name, {**PIN, "zorder": 4}) for name, point in made.joints.items() if point.link != FRAME]
     spots += [(name, style) for name in shape.heavy for style in MASS_CENTRE]

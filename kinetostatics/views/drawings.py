@@ -131,7 +131,7 @@ def draw_poses(ax, named, angles, shades):
         label(ax, ", ".join(names), places[names[0]], color=INK, fontsize="small")
     _draw_own(ax, [(stroke, owners) for stroke, owners in owned if len(owners) < len(named)])
     _draw_gravity(ax, solution.dynamics.gravity)
-    set_equal_scales(ax, [point - [0.0, GROUND_DEPTH * shape.unit] for point in shape.grounds(solution.loads)])
+    set_equal_scales(ax, [point - [0.0, GROUND_DEPTH * shape.half_block] for point in shape.grounds(solution.loads)])
     return poses
 
 

@@ -169,7 +169,7 @@ def _draw_link(ax, shape, solution, link):
         for style in MASS_CENTRE:
             ax.plot(*solution.position(link)[:, 0], **style)
     outlines = [stroke.points[..., 0].T for stroke in strokes]
-    return max(float(np.nanmax(np.ptp(np.concatenate([places, *outlines]), axis=0))), MIN_EXTENT * shape.unit)
+    return max(float(np.nanmax(np.ptp(np.concatenate([places, *outlines]), axis=0))), MIN_EXTENT * shape.half_block)
 
 
 def _draw_forces(ax, actions, link, extent, middle):

@@ -107,7 +107,7 @@ def _drawing(name, shape, reactions, torque, frame, boxes):
     made = solution.mechanism
     strokes = [*_fixed_strokes(shape), *shape.counterweights(solution), *shape.strokes(solution)]
     strokes += [*shape.ties(solution, solution.loads), *moving_surfaces(solution, solution)]
-    strokes += shape.signs(solution.loads, solution)
+    strokes += shape.symbols(solution.loads, solution)
     boxes += [_corners(stroke) for stroke in strokes]
     outputs = made.outputs
     arrows = {joint: outputs[joint].at or joint for joint in reactions}
@@ -149,7 +149,7 @@ def _corners(stroke):
 
 def _fixed_strokes(shape):
     """Fixed strokes: ground under pivots, guides, paths of joints on curves, circles of cranks."""
-    mechanism, turn, unit = shape.mechanism, shape.turn, shape.unit
+    mechanism, turn, half = shape.mechanism, shape.turn, shape.half_block
 
     def still(kind, points):
         return Stroke(kind, np.asarray(points, dtype=float)[..., None])
@@ -164,10 +164,10 @@ def _fixed_strokes(shape):
     for rail in shape.rails():
         yield still("rail", rail)
     for point in shape.grounds(turn.loads):
-        foot = np.array([[0.0, -0.7, 0.7], [0.0, -1.0, -1.0]]) * unit
+        foot = np.array([[0.0, -0.7, 0.7], [0.0, -1.0, -1.0]]) * half
         yield still("ground", point[:, None] + foot)
-        ends = point[:, None] + unit * np.array([[1.0, -1.0], [-1.0, -1.0]])
-        yield still("rail", hatched_line(ends[:, 1], ends[:, 0], 0.4 * unit))
+        ends = point[:, None] + half * np.array([[1.0, -1.0], [-1.0, -1.0]])
+        yield still("rail", hatched_line(ends[:, 1], ends[:, 0], 0.4 * half))
 
 
 def _stroke_data(stroke, size):

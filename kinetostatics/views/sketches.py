@@ -163,9 +163,9 @@ class _Dimensions:
     """Dimensions of a pose, drawn on axes; `occupied` (2, K) are points that dimension lines avoid."""
 
     def __init__(self, ax, shape, pose):
-        self.ax, self.shape, self.pose, self.unit = ax, shape, pose, shape.unit
+        self.ax, self.shape, self.pose, self.half_block = ax, shape, pose, shape.half_block
         drawn = [stroke.points[..., 0] for stroke in shape.strokes(pose)] + list(shape.rails())
-        self.occupied = np.concatenate([_dense(points, 0.5 * self.unit) for points in drawn], axis=1)
+        self.occupied = np.concatenate([_dense(points, 0.5 * self.half_block) for points in drawn], axis=1)
 
     def draw(self, angle):
         """Draw the crank angle, degrees, all dimensions, the shortest first, and mass centres."""
@@ -185,10 +185,9 @@ class _Dimensions:
 
     def place(self, lines, costs):
         """The line (2, K) of lowest cost that avoids drawn objects; later lines avoid it."""
-        samples = [_dense(line, 0.5 * self.unit) for line in lines]
+        samples, room = [_dense(line, 0.5 * self.half_block) for line in lines], CLEARANCE * self.half_block
         close = [
-            np.mean(np.min(np.hypot(*(self.occupied[:, None] - dense[..., None])), axis=1) < CLEARANCE * self.unit)
-            for dense in samples
+            np.mean(np.min(np.hypot(*(self.occupied[:, None] - dense[..., None])), axis=1) < room) for dense in samples
         ]
         best = int(np.argmin(TOO_CLOSE * np.array(close) + costs))
         self.occupied = np.concatenate([self.occupied, samples[best]], axis=1)
@@ -202,12 +201,12 @@ class _Dimensions:
         heights = np.array([start, end]) @ across
         lines = []
         for level in LEVELS:
-            height = (heights.max() if level > 0 else heights.min()) + level * STEP * self.unit
+            height = (heights.max() if level > 0 else heights.min()) + level * STEP * self.half_block
             lines.append(np.stack([start, end], axis=1) + across[:, None] * (height - heights))
         line = self.place(lines, FARTHER * np.abs(LEVELS))
         for point, foot in zip((start, end), line.T, strict=True):
-            self.ax.plot(*np.stack([point, foot + 0.5 * self.unit * _unit(foot - point)], axis=1), **EXTENSION)
-        inward, reach = _unit(line[:, 1] - line[:, 0]), ARROW * self.unit
+            self.ax.plot(*np.stack([point, foot + 0.5 * self.half_block * _unit(foot - point)], axis=1), **EXTENSION)
+        inward, reach = _unit(line[:, 1] - line[:, 0]), ARROW * self.half_block
         if outside := np.hypot(*(line[:, 1] - line[:, 0])) < 3.0 * reach:
             inward = -inward
         self.draw_arrow(line[:, 0], -inward)
@@ -220,7 +219,7 @@ class _Dimensions:
         """Draw an arc from the start of an angle, with its reference line."""
         vertex, base = self.at(angle.at), np.arctan2(*angle.start[::-1])
         turns = base + np.linspace(0.0, value, 40)
-        radii = self.unit * np.array([4.0, 5.5, 7.0, 8.5])
+        radii = self.half_block * np.array([4.0, 5.5, 7.0, 8.5])
         arcs = [vertex[:, None] + radius * np.array([np.cos(turns), np.sin(turns)]) for radius in radii]
         arc = self.place(arcs, FARTHER * np.arange(len(arcs)))
         radius = np.hypot(*(arc[:, 0] - vertex))
@@ -242,7 +241,7 @@ class _Dimensions:
 
     def draw_arrow(self, tip, along):
         """Draw the head of an arrow along a unit vector."""
-        foot, side = tip - ARROW * self.unit * along, 0.2 * ARROW * self.unit * left(along)
+        foot, side = tip - ARROW * self.half_block * along, 0.2 * ARROW * self.half_block * left(along)
         self.ax.fill(*np.stack([tip, foot + side, foot - side], axis=1), color=DIMENSION["color"], lw=0, zorder=4.5)
 
 

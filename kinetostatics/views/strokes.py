@@ -44,13 +44,13 @@ def left(direction):
     return np.array([-direction[1], direction[0]])
 
 
-def place_sign(shape, origin, direction, size=1.0, sense=1.0):
+def place_symbol(shape, origin, direction, size=1.0, sense=1.0):
     """Points (2, K, N) of a shape (K, 2) in axes with origin and direction (2, N); mirrored where the sense is -1."""
     along, across = size * np.asarray(shape, dtype=float).T[..., None]
     return origin[:, None] + direction[:, None] * along + left(direction)[:, None] * (sense * across)
 
 
-def span_sign(shape, start, end, width):
+def span_symbol(shape, start, end, width):
     """Points (2, K, N) of a shape (K, 2) stretched from start to end, with a width across."""
     apart = end - start
     length = np.hypot(*apart)
@@ -73,7 +73,7 @@ def hatched_line(start, end, width):
 THIN_RATIO = 1e-3
 """Width of a link, relative to its length, up to which it is a straight bar."""
 FAR_RATIO = 3.0
-"""Length of a spring, over the extent of the machine, above which only a part beside the machine is drawn."""
+"""A load's line longer than this, relative to the extent of the machine, is drawn only near the machine."""
 PRESSED = 1e-9
 """Contact force, relative to the largest, above which a side of a cam carries force."""
 SURFACE_POINTS = 360
@@ -101,7 +101,7 @@ class RigidStroke(NamedTuple):
     @property
     def points(self):
         """Points (2, K, N) in each pose."""
-        return place_sign(self.own.T, self.origin, self.direction)
+        return place_symbol(self.own.T, self.origin, self.direction)
 
 
 def _placed(kind, shape, origin, direction, size=1.0, sense=1.0):
@@ -111,7 +111,7 @@ def _placed(kind, shape, origin, direction, size=1.0, sense=1.0):
 
 @dataclass(frozen=True)
 class Shape:
-    """Sizes and outlines of a drawing, the same in all poses, from the motion over whole turns."""
+    """Sizes and outlines of a drawing, the same in all poses; `turn` is the motion over whole turns."""
 
     turn: Any
 
@@ -126,17 +126,17 @@ class Shape:
         return float(np.max(np.nanmax(joints, axis=-1) - np.nanmin(joints, axis=-1))) or 1.0
 
     @cached_property
-    def _signs_over_turn(self):
+    def _symbols_over_turn(self):
         return {}
 
     @property
-    def unit(self):
+    def half_block(self):
         """Half the length of a block, m."""
         return 0.03 * self.size
 
     @cached_property
     def slots(self):
-        """Slots with both ends of the joint's travel, (2, 2), in the axes of the link, the nearer end first."""
+        """Slots with both ends of the joint's travel, (2, 2), in the link's axes, the end nearer the origin first."""
         found = []
         for slot in self.mechanism.slots:
             link = self.turn.placement.links[slot.link]
@@ -144,12 +144,12 @@ class Shape:
             seen = rotate_back([here - there for here, there in pairs], link.direction)
             ends = _ends(np.array(np.broadcast_arrays(*seen)))
             apart = ends[:, 1] - ends[:, 0]
-            more = apart * self.unit / (np.hypot(*apart) or 1.0)
+            more = apart * self.half_block / (np.hypot(*apart) or 1.0)
             found.append((slot, ends if slot.rod else ends + np.column_stack([-more, more])))
         return found
 
     @cached_property
-    def ways(self):
+    def travels(self):
         """By slider: both ends of its travel, (2, 2), along its guide."""
         found = {}
         for slider, guide in self.mechanism.guides.items():
@@ -180,9 +180,9 @@ class Shape:
         """Hatched lines (2, K) along guides, over the travel of their sliders."""
         for slider, guide in self.mechanism.guides.items():
             along = np.asarray(guide.direction, dtype=float)
-            below, reach = 0.6 * self.unit * left(along), 1.5 * self.unit * along
-            start, end = self.ways[slider].T
-            yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.unit)
+            below, reach = 0.6 * self.half_block * left(along), 1.5 * self.half_block * along
+            start, end = self.travels[slider].T
+            yield hatched_line(start - reach - below, end + reach - below, 0.5 * self.half_block)
 
     def strokes(self, pose, links=None):
         """Lines and plates of all links, or of some, in the poses of a motion, from back to front."""
@@ -195,8 +195,8 @@ class Shape:
             if isinstance(pair, Meshing) and pair.link in links:  # pitch circles of planet and ring
                 axis = pose.position(pair.joint)
                 size = float(np.max(np.hypot(*axis)))
-                yield _ring("outline", axis, size, LARGE_RING)
-                yield _ring("outline", 0.0 * axis, 2.0 * size, LARGE_RING)
+                yield _unturned("outline", axis, size, LARGE_RING)
+                yield _unturned("outline", 0.0 * axis, 2.0 * size, LARGE_RING)
         for link, corners in self.corners.items():
             if corners.shape[1] > 1 and link in links:
                 kind, outline = _outline(corners)
@@ -210,37 +210,37 @@ class Shape:
             if link in links and (link in self.mechanism.guides or (corners.shape[1] == 1 and link not in rods)):
                 turn = pose.as_vector(pose.placement.links[link].direction)
                 place = pose.position(self.mechanism.references[link])
-                size = self.unit if link in self.mechanism.guides else 0.8 * self.unit
+                size = self.half_block if link in self.mechanism.guides else 0.8 * self.half_block
                 yield _placed("block", RECTANGLE, place, turn, size)
         for joint, radius in self.mechanism.rollers.items():
             if self.mechanism.joints[joint].link not in links:
                 continue
-            size = 0.9 * self.unit if radius is None else float(np.ravel(radius)[0])
-            yield _ring("roller", pose.position(joint), size)
+            size = 0.9 * self.half_block if radius is None else float(np.ravel(radius)[0])
+            yield _unturned("roller", pose.position(joint), size)
 
     def _piston(self, pose, slot, ends):
-        """Cylinder from the reference joint to the nearer end of the travel, and a rod in it."""
+        """Cylinder from its reference joint to the nearer end of the travel, and a rod in it."""
         near, far = np.hypot(*ends)
         origin, joint = pose.position(self.mechanism.references[slot.link]), pose.position(slot.joint)
         axis = (joint - origin) / np.hypot(*(joint - origin))
         length = max(0.8 * near, far - 0.6 * near)
         yield _placed("bar", [(0.0, 0.0), (-length, 0.0)], joint, axis)
-        barrel = [(0.0, -0.5), (0.85 * near / self.unit, -0.5), (0.85 * near / self.unit, 0.5), (0.0, 0.5)]
-        yield _placed("plate", barrel, origin, axis, self.unit)
-        yield _placed("bar", [(0.0, -0.5), (0.0, 0.5)], joint - axis * length, axis, self.unit)
+        barrel = [(0.0, -0.5), (0.85 * near / self.half_block, -0.5), (0.85 * near / self.half_block, 0.5), (0.0, 0.5)]
+        yield _placed("plate", barrel, origin, axis, self.half_block)
+        yield _placed("bar", [(0.0, -0.5), (0.0, 0.5)], joint - axis * length, axis, self.half_block)
 
     def counterweights(self, pose):
         """Counterweights of turning links whose mass centres lie beyond their joints.
 
-        A sector about the reference joint for a mass centre behind it, else a disk at the end of the extended link.
+        A mass centre behind the reference joint has a sector about that joint, one beyond the last joint a disk.
         """
         for name, link in self.mechanism.links.items():
             along, across = (float(np.ravel(part)[0]) for part in link.centre)
             arm, reach = np.hypot(along, across), self.corners[name][0].max()
-            turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.unit
-            if turns and reach > 0.0 and along > reach + 0.3 * self.unit:
+            turns = np.any(link.mass) and name not in self.mechanism.guides and arm > 0.3 * self.half_block
+            if turns and reach > 0.0 and along > reach + 0.3 * self.half_block:
                 yield _on_link("bar", pose, name, np.array([[reach, along], [0.0, across]]))
-                yield _ring("counterweight", pose.position(name), 2.0 * self.unit)
+                yield _unturned("counterweight", pose.position(name), 2.0 * self.half_block)
             if turns and along < min(self.corners[name][0].min(), -0.3 * arm):
                 radius = arm * 1.5 * HALF_SECTOR / np.sin(HALF_SECTOR)
                 angle = np.arctan2(across, along) + np.linspace(-HALF_SECTOR, HALF_SECTOR, 24)
@@ -252,49 +252,49 @@ class Shape:
         """Links with mass."""
         return [name for name, link in self.mechanism.links.items() if np.any(link.mass)]
 
-    def signs(self, loads, pose):
+    def symbols(self, loads, pose):
         """Lines of all loads in the poses of a motion."""
         for item in loads:
-            for sign in self._signs(item, pose):
-                yield from self._sign(sign)
+            for symbol in self._symbols(item, pose):
+                yield from self._draw(symbol)
 
-    def _signs(self, item, pose):
+    def _symbols(self, item, pose):
         """Symbols of a load in the poses of a motion; those over the turn are kept. A user's own load may have none."""
         if not hasattr(item, "signs"):
             return ()
         if pose is not self.turn:
             return item.signs(pose)
-        if id(item) not in self._signs_over_turn:
-            self._signs_over_turn[id(item)] = item, tuple(item.signs(pose))  # no other load gets its id
-        return self._signs_over_turn[id(item)][1]
+        if id(item) not in self._symbols_over_turn:
+            self._symbols_over_turn[id(item)] = item, tuple(item.signs(pose))  # no other load gets its id
+        return self._symbols_over_turn[id(item)][1]
 
-    def _sign(self, sign):
-        unit = self.unit
-        if sign.slider:
-            away = sign.sense * np.asarray(self.mechanism.guides[sign.slider].direction, dtype=float)
-            far = self.ways[sign.slider][:, np.argmax(away @ self.ways[sign.slider])]
-            end = (far + 6.0 * unit * away)[:, None] + 0.0 * sign.start
-            start = sign.start + unit * away[:, None]
-            shape = SPRING if sign.kind == "spring" else DAMPER
-            yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
-            yield Stroke(sign.kind, span_sign([(1.0, -1.0), (1.0, 1.0)], sign.start, end, unit))
-        elif sign.kind == "force":
-            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), sign.start, sign.sense * sign.direction, unit)
-        elif sign.kind == "shaft":
-            yield _ring("line", sign.start, 2.0 * unit)
-            yield _placed("counterweight", SECTOR, sign.start, sign.direction, 2.0 * unit)
-        elif sign.end is not None:
-            shape = {"spring": SPRING, "damper": DAMPER}.get(sign.kind, LINE)
-            start, end = self._near_part(sign.start, sign.end)
-            yield Stroke(sign.kind, span_sign(shape, start, end, 0.5 * unit))
+    def _draw(self, symbol):
+        half = self.half_block
+        if symbol.slider:
+            away = symbol.sense * np.asarray(self.mechanism.guides[symbol.slider].direction, dtype=float)
+            far = self.travels[symbol.slider][:, np.argmax(away @ self.travels[symbol.slider])]
+            end = (far + 6.0 * half * away)[:, None] + 0.0 * symbol.start
+            start = symbol.start + half * away[:, None]
+            shape = SPRING if symbol.kind == "spring" else DAMPER
+            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * half))
+            yield Stroke(symbol.kind, span_symbol([(1.0, -1.0), (1.0, 1.0)], symbol.start, end, half))
+        elif symbol.kind == "force":
+            yield _placed("force", np.multiply(ARROW, [5.0, 1.0]), symbol.start, symbol.sense * symbol.direction, half)
+        elif symbol.kind == "shaft":
+            yield _unturned("line", symbol.start, 2.0 * half)
+            yield _placed("counterweight", SECTOR, symbol.start, symbol.direction, 2.0 * half)
+        elif symbol.end is not None:
+            shape = {"spring": SPRING, "damper": DAMPER}.get(symbol.kind, LINE)
+            start, end = self._near_part(symbol.start, symbol.end)
+            yield Stroke(symbol.kind, span_symbol(shape, start, end, 0.5 * half))
         else:
-            shape = {"spiral": SPIRAL, "ring": RING}.get(sign.kind, COUPLE)
-            kind = "force" if sign.kind == "couple" else "spring"
-            size, senses = 1.6 * unit, np.unique(sign.sense)
+            shape = {"spiral": SPIRAL, "ring": RING}.get(symbol.kind, COUPLE)
+            kind = "force" if symbol.kind == "couple" else "spring"
+            size, senses = 1.6 * half, np.unique(symbol.sense)
             if senses.size == 1:
-                yield _ring(kind, sign.start, size, shape, senses[0])
+                yield _unturned(kind, symbol.start, size, shape, senses[0])
             else:
-                yield Stroke(kind, place_sign(shape, sign.start, np.array([[1.0], [0.0]]), size, sign.sense))
+                yield Stroke(kind, place_symbol(shape, symbol.start, np.array([[1.0], [0.0]]), size, symbol.sense))
 
     def _near_part(self, start, end):
         """Ends of a line, in poses; if it leads far away, those of a part beside the machine."""
@@ -316,7 +316,7 @@ class Shape:
                 continue
             point = np.array([float(np.ravel(part)[0]) for part in place])
             foot = _nearest_on(_outline(self.corners[name])[1], point)
-            if np.hypot(*(foot - point)) > 0.5 * self.unit:
+            if np.hypot(*(foot - point)) > 0.5 * self.half_block:
                 yield _on_link("tie", pose, name, np.column_stack([point, foot]))
 
     def grounds(self, loads):
@@ -325,11 +325,11 @@ class Shape:
             if point.link == FRAME:
                 yield self.turn.position(name)[:, 0]
         for item in loads:
-            for sign in self._signs(item, self.turn):
-                if sign.kind == "shaft":
-                    yield sign.start[:, 0]
-                elif sign.kind in ("spring", "damper", "line") and sign.end is not None:
-                    ends = () if self._leads_far(sign.start, sign.end) else (sign.start, sign.end)
+            for symbol in self._symbols(item, self.turn):
+                if symbol.kind == "shaft":
+                    yield symbol.start[:, 0]
+                elif symbol.kind in ("spring", "damper", "line") and symbol.end is not None:
+                    ends = () if self._leads_far(symbol.start, symbol.end) else (symbol.start, symbol.end)
                     yield from (end[:, 0] for end in ends if not np.ptp(end, axis=-1).any())
 
 
@@ -340,7 +340,7 @@ def _on_link(kind, pose, link, points):
     )
 
 
-def _ring(kind, place, radius, points=RING, sense=1.0):
+def _unturned(kind, place, radius, points=RING, sense=1.0):
     """A stroke that does not turn, by default a circle."""
     return _placed(kind, points, place, np.broadcast_to([[1.0], [0.0]], place.shape), radius, sense)
 
@@ -388,9 +388,9 @@ def _nearest_on(outline, point):
 
 
 def working_curves(solution):
-    """Working curves of cams whose roller has a known radius: the cam's body, and points (2, K) in its axes.
+    """Working curves of cams whose roller has a known radius: the cam's body, and points (2, K) in the body's axes.
 
-    A curve for each side on which the roller is pressed: outside a disk, inside a ring.
+    Each side that carries force has a curve: the outside of a disk, the inside of a ring.
     """
     for group in solution.mechanism.groups:
         for led in group.led:
@@ -425,9 +425,9 @@ def whole_turn(solution):
 
 
 def at_angles(solution, degrees):
-    """Motion of the mechanism at other crank angles, degrees, without loads; the crank speed is 1, -1 or 0."""
-    ways = np.unique(np.sign(solution.crank_speed))
-    return Motion(solution.mechanism, np.radians(degrees), float(ways[0]) if ways.size == 1 else 0.0, 0.0)
+    """Motion at other crank angles, degrees, without loads; the speed is the solution's sign, 0 if it has several."""
+    senses = np.unique(np.sign(solution.crank_speed))
+    return Motion(solution.mechanism, np.radians(degrees), float(senses[0]) if senses.size == 1 else 0.0, 0.0)
 
 
 def moves_alike(solution, other):
@@ -445,12 +445,12 @@ def moves_alike(solution, other):
 
 
 def load_strokes(solution, angle):
-    """Signs of the loads of a machine in a pose, as strokes."""
-    return list(Shape(whole_turn(solution)).signs(solution.loads, at_angles(solution, angle)))
+    """Symbols of the loads of a machine in a pose, as strokes."""
+    return list(Shape(whole_turn(solution)).symbols(solution.loads, at_angles(solution, angle)))
 
 
 def strokes_by_owner(named, angle):
-    """Counterweights and signs of loads in a pose, each with the labels of its machines."""
+    """Counterweights and symbols of loads in a pose, each with the labels of its machines."""
     found = []
     for name, solution in named.items():
         weights = Shape(whole_turn(solution)).counterweights(at_angles(solution, angle))

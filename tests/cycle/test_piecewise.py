@@ -20,7 +20,7 @@ WIDTH = TURN / 24
 def on_pieces(output, function, breaks, width=WIDTH, period=TURN, vector=False):
     """Numbers of an output, and whether they are uncertain, on pieces between breaks that are not halved."""
     pieces = Pieces.between(breaks, period, min(width, TURN / (2 * (output.order or 0) or 1)), 10)
-    values = function(pieces.checked, pieces.owner)
+    values = function(pieces.check_angles, pieces.owner)
     return estimated(pieces, output, values**2 if row_of(output, {output.quantity: vector})[1] else values, vector)
 
 
@@ -93,7 +93,7 @@ def test_vector_magnitude_near_zero_is_right():
 def test_a_kink_beyond_the_last_point_of_a_piece_is_reported():
     pieces = Pieces.between(np.array([[1.0]]), TURN, WIDTH, 10)
     for beside, doubted in ((-0.0002, True), (0.0002, True), (0.0, False)):
-        values = np.abs(pieces.checked - pieces.low[7] - beside)
+        values = np.abs(pieces.check_angles - pieces.low[7] - beside)
         assert (pieces.errors(values)[6:8].max() > 1e-5) == doubted, beside
 
 
@@ -102,7 +102,7 @@ def test_a_kink_just_before_a_break_is_found():
     kink = lambda angle: np.abs(angle - 0.9999) + np.where(angle > 1.0, -2.0 * (angle - 1.0), 0.0)  # noqa: E731
     for jump in (False, True):
         pieces = Pieces.between(np.array([[1.0]]), TURN, WIDTH, 10)
-        values = kink(pieces.checked) + np.where(pieces.checked > 1.0, float(jump), 0.0)
+        values = kink(pieces.check_angles) + np.where(pieces.check_angles > 1.0, float(jump), 0.0)
         at = np.flatnonzero(pieces.low == 1.0)[0]
         assert pieces.errors(values)[at - 1] > 1e-5
         assert pieces.errors(values)[at] < 1e-14

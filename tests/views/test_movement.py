@@ -35,7 +35,7 @@ def test_strokes_are_restored_in_each_pose():
             solution = machine.solution
             shape = Shape(solution)
             wanted = [*shape.counterweights(solution), *shape.strokes(solution), *shape.ties(solution, solution.loads)]
-            wanted += [*moving_surfaces(solution, solution), *shape.signs(solution.loads, solution)]
+            wanted += [*moving_surfaces(solution, solution), *shape.symbols(solution.loads, solution)]
             sent = drawing["strokes"][-len(wanted) :]
             for stroke, item in zip(wanted, sent, strict=True):
                 assert item["kind"] == stroke.kind

@@ -66,7 +66,7 @@ class SliderLoad(Load):
         return Support(rotate((minus(None, self.push(motion)), 0.0), line.direction), point)
 
     def misplaced(self, mechanism):
-        """Sentence on an unknown slider."""
+        """Yield the problem of an unknown slider, or None."""
         problem = checks.choice(f"{type(self).__name__}: on", self.on, tuple(mechanism.guides))
         if problem and not mechanism.guides:
             problem += f"; {mechanism.name} has no slider, a Force or PointSpring acts at any point"
@@ -82,7 +82,7 @@ class Spring(SliderLoad):
     stiffness : float or array
         N/m, all springs together.
     free_position : float or array
-        Coordinate of B along the guide (B . guide direction) at which the spring is free, m.
+        Coordinate of B along the guide (B . guide direction) at which the spring is unloaded, m.
     on : str
         Slider on which it acts.
     cubic : float or array
@@ -131,8 +131,8 @@ class Spring(SliderLoad):
 
         Its stiffness c is mass M times crank speed w squared, so spring and inertia force are opposite at every angle.
         A spring of mass m needs the stiffness c z cot z = M w^2 at its end, z = w sqrt(m / c), waves included. That is
-        z tan z = m / M, with one root below pi / 2 for every m and M. A scene neglects the waves, so in a scene the end
-        of the spring is stiffer by c z^4 / 45 and more.
+        z tan z = m / M, with one root below pi / 2 for every m and M. A scene neglects the waves, so the end of its
+        spring is stiffer by at least c z^4 / 45.
 
         Parameters
         ----------
@@ -189,8 +189,8 @@ class Spring(SliderLoad):
         elongation = motion.elongation(self.free_position, self.on)
         return self.stiffness + self.cubic * elongation * elongation
 
-    def mean_rate(self, position, weights=None):
-        """Mean stiffness of small oscillations over the slider's coordinates in a period, N/m, by design."""
+    def mean_tangent(self, position, weights=None):
+        """Mean tangent stiffness over the slider's positions in a period, N/m, by design."""
         rate = self.stiffness + 3.0 * self.cubic * (position - self.free_position) ** 2
         return np.mean(rate, axis=-1, keepdims=np.ndim(rate) > 1) if weights is None else rate @ weights
 
@@ -205,7 +205,7 @@ class Spring(SliderLoad):
         return self.stiffness + self.cubic * length * length, self.cubic * (more * (2.0 * length + more))
 
     def foot(self, motion):
-        """Coordinate at which it is free, m."""
+        """Free position, m: there the frame takes the force."""
         return self.free_position
 
     def potential(self, motion):
@@ -217,7 +217,7 @@ class Spring(SliderLoad):
         return (0.5 * self.stiffness + 0.25 * self.cubic * square) * square
 
     def support(self, motion):
-        """Force at the feet: the opposite of the elastic force, less inertia, plus weight of springs with mass."""
+        """Force at the foot: the opposite of the elastic force, plus half of its weight, less m a / 6 of its mass m."""
         force, point, _ = super().support(motion)
         mass = present(self.mass)
         if mass is not None:
@@ -274,7 +274,7 @@ class ProcessForce(WorkForce):
         N. An array has one value for each crank angle; a `Table` is read by crank angle or travel. A function takes the
         `Motion` and returns values that depend, angle by angle, on crank angle, position or velocity. The function must
         be pure, without counters, random numbers or clocks, because engines call it any number of times. The compiled
-        engine compiles its constants; other constants need a new compilation.
+        engine treats its constants as fixed; a function with other constants is compiled again.
     on : str
         Slider on which it acts.
     period : float, optional

@@ -1,7 +1,6 @@
 """Faults of values as sentences, the one error that lists them, and "did you mean" by synonyms and spelling.
 
-A function named after a kind of value (`count`, `truth`, `mapping` ...) returns the fault of a value of this kind, or
-None.
+A function named after a kind of value (`count`, `truth` ...) returns the fault of a value not of this kind, or None.
 """
 
 import numbers
@@ -54,7 +53,7 @@ SYNONYMS = {
     "slider": ("piston", "crosshead", "ram"),
     "rocker": ("follower", "output_link"),
 }
-"""Words used elsewhere, by the library's word."""
+"""Synonyms of each of the library's words."""
 _WORDS_BY_SYNONYM: dict[str, list[str]] = {}
 for _word, _others in SYNONYMS.items():
     for _other in _others:
@@ -64,11 +63,11 @@ MIN_SIMILARITY_OF_ALL = 0.9
 _UNIT = re.compile(r"\s*(?:\([^()]*\)|\[[^\[\]]*\])\s*$")
 """A unit after a name, as in headings."""
 _PART = re.compile(r"([^\s.]*?)(\d*)(?=[\s.]|$)")
-"""A word of a path or output, and the number of its label."""
+"""A word of a path or output, and the digits at its end."""
 
 
 def nearest(value, allowed):
-    """The nearest allowed word by synonym or spelling, or None; units and bars of a magnitude are ignored."""
+    """The nearest allowed word by synonym or spelling, or None; a unit and the bars of ``"|O|"`` are ignored."""
     import difflib
 
     text, allowed = _UNIT.sub("", str(value)[:100]).strip("|"), list(allowed)
@@ -94,7 +93,7 @@ def _synonym_spellings(text):
 class Problem(str):
     """Fault of a value, as a sentence; `designs` is the mask of the designs that have it, None for all.
 
-    `wrong` is the mask of the values of an array (designs, N).
+    `wrong` is the mask of the values at fault in an array (designs, N).
     """
 
     designs: Any
@@ -121,7 +120,7 @@ def require(owner, *problems):
 
 
 def broadcast_problem(**shapes):
-    """Fault of named shapes that do not broadcast together, or None."""
+    """Fault if named shapes do not broadcast together, else None."""
     if len(shapes) < 2:
         return None
     try:
@@ -137,11 +136,11 @@ MAX_TABLE_MEMORY = 10_000_000_000
 MAX_COUNT = 10**15
 """Largest whole number where no table is needed."""
 BYTES_PER_ANGLE = 1000
-"""Size of the results at a crank angle with all forces in a table."""
+"""Memory for the results at one crank angle, in a table of all forces, bytes."""
 
 
 def count(name, value, *, size=None):
-    """Fault of a whole number of at least 1, or None; ``value * size`` bytes must fit into memory."""
+    """Fault unless the value is a whole number of at least 1; ``value * size`` bytes must fit into memory."""
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 1:
         return f"{name} must be a whole number of at least 1, got {value!r}"
     if size is None and int(value) > MAX_COUNT:
@@ -153,24 +152,24 @@ def count(name, value, *, size=None):
 
 
 def truth(name, value):
-    """Fault of a truth value, or None."""
+    """Fault unless the value is True or False."""
     return None if isinstance(value, bool | np.bool_) else f"{name} must be True or False, got {shown(value)}"
 
 
 def mapping(name, value):
-    """Fault of a mapping of path to number, or None."""
+    """Fault unless the value is a mapping."""
     found = isinstance(value, Mapping)
     return None if found else f'{name} must be a dict of path to number, as {{"crank_length": 0.3}}, got {shown(value)}'
 
 
 def names(name, value):
-    """Fault of one or several names, or None."""
+    """Fault unless the value is a name, or several."""
     several = isinstance(value, Iterable) and not isinstance(value, bytes | Mapping)
     return None if several else f"{name} must be a name, or several in a list, got {shown(value)}"
 
 
 def seed(name, value):
-    """Fault of the seed of random numbers, or None."""
+    """Fault unless the value is a seed of random numbers, or None."""
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, numbers.Integral) or value < 0:
@@ -179,7 +178,7 @@ def seed(name, value):
 
 
 def solution(name, value):
-    """Fault of a `Solution`, or None."""
+    """Fault unless the value is a `Solution`."""
     if hasattr(type(value), "power_residual"):
         return None
     return (
@@ -189,19 +188,19 @@ def solution(name, value):
 
 
 def case(name, value):
-    """Fault of a `Case`, or None."""
+    """Fault unless the value is a `Case`."""
     return None if hasattr(value, "variants") else f"{name} must be a Case, as ks.load_case, got {_described(value)}"
 
 
 def mechanism(name, value):
-    """Fault of a `Mechanism`, or None."""
+    """Fault unless the value is a `Mechanism`."""
     if hasattr(type(value), "references"):
         return None
     return f"{name} must be a Mechanism, as ks.crank_slider(...) and solution.mechanism are, got {_described(value)}"
 
 
 def quantity(value, *, function=False):
-    """Fault of the name of a quantity, or None."""
+    """Fault unless the value is the name of a quantity, or a function if allowed."""
     if isinstance(value, str) or (function and callable(value)):
         return None
     other = ", or a function of a solution" if function else ""
@@ -215,7 +214,7 @@ def _described(value):
 
 
 def choice(name, value, allowed):
-    """Fault of a name that must be one of `allowed`, with the nearest one, or None."""
+    """Fault unless the value is one of `allowed`, with the nearest of these."""
     if (type(value) is str and value in allowed) or any(value is word for word in allowed):
         return None
     return f"{name} is {shown(value)}, allowed: {', '.join(map(repr, allowed)) or 'none'}{hint(value, allowed)}"

@@ -114,13 +114,13 @@ def _differences(order, solution, quantity, step):
     offsets, first, second = (np.array(row) for row in STENCILS[order])
     require_one_design(solution)
 
-    def way(mechanism, angle):
+    def place(mechanism, angle):
         position = joint_positions(mechanism, angle + step * offsets[:, None])
         here = position[:, :, offsets.size // 2]
         slopes = (np.tensordot(part, position, (0, 2)) for part in (first / step, second / step**2))
         return placement_from_joints(mechanism, angle, here, *slopes)
 
-    return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
+    return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(place)), quantity))
 
 
 def _spectral(solution, quantity, samples):
@@ -137,13 +137,13 @@ def _spectral(solution, quantity, samples):
     harmonic = 1j * np.arange((samples + 1) // 2)
     onward = np.exp(harmonic * angle[0])
 
-    def way(mechanism, angle):
+    def place(mechanism, angle):
         shift = onward * (angle.size / samples)
         spectrum = np.fft.rfft(joint_positions(mechanism, sampled))[..., : harmonic.size] * shift
         orders = (np.fft.irfft(spectrum * harmonic**k, n=angle.size) for k in range(3))
         return placement_from_joints(mechanism, angle, *orders)
 
-    return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(way)), quantity))
+    return _report_coarse_motion(lambda: components(replace(solution, engine=Kernels(place)), quantity))
 
 
 def _report_coarse_motion(run):

@@ -23,9 +23,9 @@ from ...machine.groups.change_points import SIDES
 
 
 def with_numeric_side(mechanism):
-    """The mechanism with signs +1 and -1 as assemblies in place of the words "open" and "crossed"."""
+    """The mechanism with the assembly modes "open" and "crossed" given as signs, +1 and -1."""
     if mechanism.passes:
-        raise NotGivenError(f"{mechanism.name} passes change points, but the formulas keep to one side of them")
+        raise NotGivenError(f"{mechanism.name} passes change points, but this method's formulas keep to one side")
     groups = tuple(
         replace(group, assembly=SIDES[group.assembly]) if group.through else group for group in mechanism.groups
     )
@@ -49,11 +49,11 @@ class Method:
     settings : tuple
         Values of the setting, from coarse to fine.
     ours : bool
-        Whether it is the library's own path.
+        Whether the library itself computes in this way.
     bound : function, optional
         ``bound(solution, quantity)``: the proven bound on the method's error, (N,); None without proof.
     precision : "double" or "single"
-        Precision of the library's own path.
+        Precision of the library's own computation.
     device : function, optional
         ``device()``: the computing device, such as "gpu: NVIDIA H100"; by default "cpu".
 
@@ -123,21 +123,21 @@ LIBRARIES = ("kinetostatics", "numpy", "scipy", "sympy", "numba", "jax", "python
 MIN_MEASURED_TIME = 2e-3
 """Shortest measured time, s; a faster function is called repeatedly."""
 LONG_CALL = 1.0
-"""A call that takes longer is timed once, s."""
+"""A call that takes longer is timed in one round only, s."""
 
 
 def seconds(*runs, repeats=5):
     """Median time of one call of each function, s.
 
     The functions take turns, so a busy machine slows all of them alike. First calls, which may compile, do not count.
-    Each call computes the sines of the crank angles again.
+    Each call includes the time for the sines of the crank angles.
 
     Parameters
     ----------
     *runs : function
         Functions without arguments.
     repeats : int
-        Number of rounds; the median counts. A call longer than a second is timed once.
+        Number of rounds; the median counts. A call longer than a second is timed in one round only.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Requests of one page and their answers: parts come when they are ready, newer requests end older ones."""
+"""Requests of one page and their answers, sent in parts when ready; a newer request cancels older ones."""
 
 import asyncio
 import contextlib
@@ -11,7 +11,7 @@ PAUSE = 0.05
 
 
 class Conversation:
-    """Answers each request of a page; numbers of an older state are not sent once a newer one is asked for.
+    """Answers each request of a page; results for an older state are not sent once a newer state is requested.
 
     `send` is called with the header and the buffers of each answer, as `packed` gives them.
     """
@@ -20,7 +20,7 @@ class Conversation:
         self.session, self._send = session, send
         self._tasks: dict[str, asyncio.Task] = {}
 
-    def take(self, request):
+    def answer(self, request):
         """Answer a request: at once, or part by part in a task of the running event loop."""
         kind = request.get("kind")
         found = self.session.answer(request)
@@ -31,7 +31,7 @@ class Conversation:
             self._tasks[kind] = asyncio.ensure_future(self._send_parts(found))
 
     def end(self):
-        """Drop all answers that are not ready."""
+        """Cancel all answers that are not ready."""
         self._drop(list(self._tasks))
 
     def _drop(self, kinds):

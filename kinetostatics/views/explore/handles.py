@@ -291,7 +291,7 @@ class Points:
         for slot, ends in self.shape.slots:
             if slot.link == carrier:  # just behind its farther end
                 far, along = ends[:, 1], np.array([math.cos(slot.angle), math.sin(slot.angle)])
-                far = far + math.copysign(self.shape.unit, far @ along) * along
+                far = far + math.copysign(self.shape.half_block, far @ along) * along
                 vertex, position = self.at(slot.joint), self.at((carrier, *map(float, far)))
         sides = np.sign(ray @ (position - vertex))
 

@@ -177,7 +177,7 @@ def _socket_handler(site):
                     self.close(REFUSED, "This address is of an earlier start; open the one printed last.")
                     return
                 self.conversation = Conversation(site.session_of_page(), self.send)
-            self.conversation.take(request)
+            self.conversation.answer(request)
             if self.sent is not None:
                 with contextlib.suppress(asyncio.CancelledError):  # the server ends
                     await asyncio.wait([self.sent])

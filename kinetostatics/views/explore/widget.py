@@ -99,7 +99,7 @@ def widget_class():
                     self._new_session(), lambda header, parts: self.send({"page": page, "answer": header}, parts)
                 )
             with shown_in(self._units):
-                self._conversations[page].take(content["request"])
+                self._conversations[page].answer(content["request"])
 
         def close(self):
             """Remove the widget from all pages."""

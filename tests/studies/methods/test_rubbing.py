@@ -79,6 +79,7 @@ def test_friction_that_does_not_settle_is_told(monkeypatch):
 
 def test_friction_in_a_given_sense_is_refused():
     s = drawn("slider")
-    held = replace(s, friction=replace(s.friction, rubs=tuple(replace(rub, sense=1.0) for rub in s.friction.rubs)))
+    by_joint = tuple(replace(item, sense=1.0) for item in s.friction.by_joint)
+    held = replace(s, friction=replace(s.friction, by_joint=by_joint))
     with pytest.raises(NotGivenError, match="friction with a given sense"):
         NEWTON.prepare(held, "O", 6)()
