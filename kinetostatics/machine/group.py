@@ -390,11 +390,11 @@ class Group(Part):
     # Change points
 
     def on_crank(self, throws):
-        """The group specialised for the pins of a crank, whose lengths may decide its structure; unchanged by default."""
+        """The group specialised for the pins of a crank, whose lengths may decide its structure; or itself."""
         return self
 
     def beside(self, groups, throws):
-        """The group specialised for the other groups of its chain and the pins of the crank; unchanged by default."""
+        """The group specialised for the other groups of its chain and the pins of the crank; or itself."""
         return self
 
     @property

@@ -200,7 +200,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Series:
-    """Coefficients of a series, a tuple: their names are the orders from `start` on; `first` is the rule of the first."""
+    """Coefficients of a series, a tuple: their names are orders from `start` on; `first` is the rule of the first."""
 
     unit: str
     letter: str = "a"
