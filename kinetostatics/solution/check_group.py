@@ -312,7 +312,7 @@ def _slots(stage, placement):
 
 
 def _slidings(stage, placement):
-    """Sliding pairs: rate, which gives the direction of friction, by the links' relative motion; moment of the force."""
+    """Sliding pairs: rate, which gives friction its direction, by the links' relative motion; moment of the force."""
     for name, pair in _declared(stage.group, "pairs").items():
         if type(pair) is not Sliding:
             continue
@@ -352,7 +352,7 @@ def _derivatives(stage, placement):
 
 
 def _rates(stage, placement):
-    """By name of a derivative: value, its derivative by the group's kernel, and a size below which errors do not count."""
+    """By name of a derivative: value, its derivative by the kernel, and a size below which errors do not count."""
     moving = placement.joints.keys() - {"O", *stage.carrying_joints}
     joints = {f"joint {name}": placement.joints[name] for name in moving}
     joints |= {f"travel of {name}": travel for name, travel in placement.travels.items()}
@@ -375,7 +375,7 @@ def _rates(stage, placement):
 
 
 def _forces(stage, still):
-    """Virtual work of any loads for motions of each joint, and of weight and inertia; with that of the demands it is 0."""
+    """Virtual work of any loads for motions of each joint, and of weight and inertia; the demands make it 0."""
     if not stage.group.links:
         return
     random = np.random.default_rng(0)

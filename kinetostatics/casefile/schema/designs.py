@@ -1,7 +1,6 @@
 """Tables of designs: goal, parameters that vary, limits.
 
-Outputs, limits and bounds remain texts here, because the variant decides which names exist. `casefile.designs` checks
-them against it.
+Outputs, limits and bounds stay texts, because the variant decides which names exist; `casefile.designs` checks them.
 """
 
 from typing import Annotated, Literal

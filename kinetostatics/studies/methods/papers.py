@@ -57,8 +57,8 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
     """Position of the slider pin by double cross product, acos and the sign of a mixed product (Kotov 2024, figure 3).
 
     Steps: the perpendicular AC from A to the guide W1-W2, the angle CAB by acos, its side by the sign of a mixed
-    product, and a special case for A on the guide. If A is almost on an inclined guide, rounding
-    may give the sign 0 without the special case, or the special case without the sign 0.
+    product, and a special case for A on the guide. If A is almost on an inclined guide, rounding may give the sign 0
+    without the special case, or the special case without the sign 0.
 
     Parameters
     ----------
@@ -302,8 +302,8 @@ class RollerByAngles(CamRoller):
     """Cam roller by the sawframe study: cam and slot force from size and direction of the load R42 on the block.
 
     R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu. R41 = R42 sin(phi -
-    alpha42) + R40 sin(nu) acts across the ray, at phi + 90 deg. The study prints - R40 sin(nu); then the three forces
-    on the block do not balance. `sign` is `EQUILIBRIUM` or `PRINTED`.
+    alpha42) + R40 sin(nu) acts across the ray, at phi + 90 deg. The study prints a minus before R40 sin(nu), with which
+    the three forces on the block do not balance. `sign` is `EQUILIBRIUM` or `PRINTED`.
     """
 
     sign: float = EQUILIBRIUM
