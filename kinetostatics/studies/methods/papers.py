@@ -57,8 +57,7 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
     """Position of the slider pin by double cross product, acos and the sign of a mixed product (Kotov 2024, figure 3).
 
     Steps: the perpendicular AC from A to the guide W1-W2, the angle CAB by acos, its side by the sign of a mixed
-    product, and a special case for A on the guide. If A is almost on an inclined guide, rounding may give the sign 0
-    without the special case, or the special case without the sign 0.
+    product, a special case for A on the guide. There, on an inclined guide, rounding may make the last two disagree.
 
     Parameters
     ----------
