@@ -46,24 +46,24 @@ def wave_percentage(ratio):
     return f"{100.0 * abs(end_stiffness(1.0, 1.0, z) - (1.0 - z * z / 3.0)):.2g} %"
 
 
-_DRIVES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
-"""Results of `drive_of` by mechanism, then by slider."""
+_HIGHEST_HARMONICS: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+"""Results of `highest_harmonic` by mechanism, then by slider."""
 
 
-def drive_of(mechanism, slider):
+def highest_harmonic(mechanism, slider):
     """Order of a slider's highest harmonic that counts, per crank turn, and its coordinate, m; None if unknown."""
-    known = _DRIVES.setdefault(mechanism, {})
+    known = _HIGHEST_HARMONICS.setdefault(mechanism, {})
     if slider not in known:
         count = SAMPLES * mechanism.turns
         with np.errstate(invalid="ignore", divide="ignore"):
             travel = mechanism.place(np.linspace(0.0, 2.0 * np.pi * mechanism.turns, count, endpoint=False)).travels[
                 slider
             ]
-        known[slider] = _drive_of(travel, mechanism.turns)
+        known[slider] = _highest_harmonic(travel, mechanism.turns)
     return known[slider]
 
 
-def _drive_of(travel, turns):
+def _highest_harmonic(travel, turns):
     if not all(isinstance(part, np.ndarray) and part.dtype.kind == "f" and np.isfinite(part).all() for part in travel):
         return None
     sizes = np.abs(np.fft.rfft(travel.second))[..., 1:]
