@@ -368,7 +368,7 @@ class Rules:
         self._quick = tuple((field, rule.quick) for field, rule in rules.items() if field not in optional)
         self._quick_if_given = tuple(optional.items())
 
-    def are_well(self, values):
+    def admit_quickly(self, values):
         """Whether the quick rules admit all values by field; replaces each admitted one by the value to store."""
         for field, quick in self._quick:
             value = values[field]
@@ -394,7 +394,7 @@ class Rules:
 
     def keep(self, values, owner):
         """Check the values in a mapping by field and store them there, or raise `ParameterError`."""
-        if not self.are_well(values):
+        if not self.admit_quickly(values):
             values.update(check_values(owner, self.rules, values))
 
 
@@ -420,7 +420,7 @@ class Checked:
 
     def __post_init__(self):
         rules = self.RULES
-        if rules.also is not None or not rules.are_well(self.__dict__):
+        if rules.also is not None or not rules.admit_quickly(self.__dict__):
             rules.admit(self)
 
 
