@@ -117,7 +117,7 @@ def check(group):
         group = replace(group)  # as before `on_crank`: the test moves its joint freely, so there are no change points
     stage = _stage(group)
     errors: dict[str, float] = {}
-    for compare in (_shape, _points, _fixed_joints, _guides, _slots, _slidings, _derivatives, _forces):
+    for compare in (_links_and_courses, _points, _fixed_joints, _guides, _slots, _slidings, _derivatives, _forces):
         for what, found, expected, unit in compare(stage, stage.place_joints()):
             errors[what] = max(errors.get(what, 0.0), _error(found, expected, unit))
     return GroupReport(type(group).__name__, errors)
@@ -217,7 +217,7 @@ def _stage(group):
 # Comparisons: name of the check, two values that must agree, and a size below which differences do not count
 
 
-def _shape(stage, placement):
+def _links_and_courses(stage, placement):
     """Lengths of bars, unit vectors and reference joints of links, elongations of sliders, and courses of joints."""
     group, size = stage.group, stage.size
     for bar in group.bars:
