@@ -19,7 +19,7 @@ TINY = 1e-200
 UNKNOWN_REACH = 1.0
 """Upper end of the range of a zero, SI, if no other number of the machine suggests one."""
 DRIVE = ("crank_speed", "crank_acceleration")
-OF_A_GROUP = re.compile(r"(\w+?)_(\w*?)(\d*)")
+PATH_OF_LINK = re.compile(r"(\w+?)_(\w*?)(\d*)")
 """Path of a number of a link or guide: "coupler_length2" is the length of "coupler2"."""
 COORDINATES = re.compile(r".*(along|across|offset\d*|\.[xy])")
 """Paths of coordinates and offsets, which may be negative."""
@@ -74,7 +74,7 @@ def words(path, links):
     part, _, name = path.partition(".")
     if path in DRIVE:
         return "drive", path.replace("_", " ")
-    match = OF_A_GROUP.fullmatch(part)
+    match = PATH_OF_LINK.fullmatch(part)
     if part not in links and match and (match[1] == "guide" or match[1] + match[3] in links):
         part, name = match[1] + match[3], f"{match[2]}.{name}".strip(".")
     if not name:
