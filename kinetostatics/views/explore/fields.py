@@ -49,7 +49,7 @@ def fields(scene):
     for path, value in plain.items():
         if HIDDEN.fullmatch(path):
             continue
-        group, label = words(path, links)
+        group, label = group_and_label(path, links)
         factor, unit = shown_unit(units[path])
         low, high = ends(path, value, plain, units)
         step = round_step((high - low) * factor / STEPS_OF_A_SLIDER)
@@ -69,7 +69,7 @@ def fields(scene):
     return [field for group in found.values() for field in group]
 
 
-def words(path, links):
+def group_and_label(path, links):
     """Group of a parameter ("drive", "lengths", or its link or load), and its label in that group."""
     part, _, name = path.partition(".")
     if path in DRIVE:
