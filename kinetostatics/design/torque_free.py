@@ -215,8 +215,8 @@ def torque_free_cam(
         torque = any(isinstance(limit.output, Output) and limit.output.quantity == TORQUE for limit in task.limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
-    rubbing = scene_of(source).friction.get("O")
-    shaft = getattr(rubbing, "radius", None) if shaft_radius is None else options.shaft_radius
+    friction = scene_of(source).friction.get("O")
+    shaft = getattr(friction, "radius", None) if shaft_radius is None else options.shaft_radius
     return replace(found, before=given, bound=ratio_bound(start, found.scene, compared), shaft_radius=shaft)
 
 
