@@ -123,13 +123,13 @@ def estimated(pieces, output, values, vector=False):
     return found, is_rough(output, found, error, lambda rough: size[rough])
 
 
-def row_of(output, vectors):
+def values_key(output, vectors):
     """Quantity of an output, and whether it is reduced by its square: a magnitude has a kink at 0, its square none."""
     return output.quantity, bool(vectors[output.quantity]) and output.reduction in PEAKS
 
 
 def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
-    """Halve pieces until outputs reach the goal, within `Pieces.resolved`'s limits; values are keyed by `row_of`.
+    """Halve pieces until outputs reach the goal, within `Pieces.resolved`'s limits; values are keyed by `values_key`.
 
     Parameters
     ----------
@@ -142,10 +142,10 @@ def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
     goal : float
         Largest error of an output relative to the largest value of its quantity.
     """
-    sides: dict = {row_of(output, vectors): set() for output in outputs}
-    integrals = {row_of(output, vectors) for output in outputs if output.reduction not in PEAKS}
+    sides: dict = {values_key(output, vectors): set() for output in outputs}
+    integrals = {values_key(output, vectors) for output in outputs if output.reduction not in PEAKS}
     for output in outputs:
-        sides[row_of(output, vectors)].update(signs(output.reduction) if output.reduction in PEAKS else ())
+        sides[values_key(output, vectors)].update(signs(output.reduction) if output.reduction in PEAKS else ())
 
     def rows(angle, designs):
         found = evaluate(angle, designs)
