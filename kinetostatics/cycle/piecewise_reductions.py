@@ -129,7 +129,7 @@ def values_key(output, vectors):
 
 
 def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
-    """Halve pieces until outputs reach the goal, within `Pieces.resolved`'s limits; values are keyed by `values_key`.
+    """Halve pieces until outputs reach the goal, within the limits of `Pieces.resolved`; values by `values_key`.
 
     Parameters
     ----------

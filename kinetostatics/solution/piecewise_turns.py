@@ -85,7 +85,7 @@ class PiecewiseTurns(NamedTuple):
         return dict(zip(names, rows, strict=True))
 
     def refined(self, outputs):
-        """Yield blocks of designs: their numbers, refined pieces, and values by `values_key` outputs."""
+        """Yield blocks of designs: their numbers, refined pieces, and values by `values_key`."""
         vectors = {name: quantity(self.scene, name).vector for name in quantity_names(outputs)}
         step = max(1, BLOCK_VALUES * self.designs // self.pieces.checked.size)
         for start in range(0, self.designs, step):
