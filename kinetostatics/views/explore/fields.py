@@ -51,7 +51,7 @@ def fields(scene):
             continue
         group, label = group_and_label(path, links)
         factor, unit = shown_unit(units[path])
-        low, high = ends(path, value, plain, units)
+        low, high = range_of(path, value, plain, units)
         step = round_step((high - low) * factor / STEPS_OF_A_SLIDER)
         found.setdefault(group, []).append(
             {
@@ -85,7 +85,7 @@ def group_and_label(path, links):
     return part, name.replace("_", " ").replace(".", " ")
 
 
-def ends(path, value, values, units):
+def range_of(path, value, values, units):
     """Range of a number, SI: half a turn each way for angles, 0 to twice the value otherwise, both ways for coordinates."""
     unit, dimension = units[path], dimension_name(units[path])
     if dimension == "angle":
