@@ -158,17 +158,17 @@ class _Stage(NamedTuple):
         """Links of other groups to which the group fixes a joint."""
         return {point.link for point in self.group.joints.values()} - {FRAME, *self.group.links}
 
-    def place_joints(self, turn=0.0, way=(0.5, 0.3), alone=""):
-        """Placement with the crank turned on by `turn`, rad; carrying joints, or only `alone`, begin along `way`."""
+    def place_joints(self, turn=0.0, tangent=(0.5, 0.3), alone=""):
+        """Placement with the crank turned on by `turn`, rad; carrying joints, or only `alone`, begin along `tangent`."""
         angle = self.angle + turn
         direction = ray(angle)
         joints = {"O": ORIGIN}
         for order, name in enumerate(self.carrying_joints):
-            joints[name] = self._joint(order, turn, way if alone in ("", name) else (0.0, 0.0))
+            joints[name] = self._joint(order, turn, tangent if alone in ("", name) else (0.0, 0.0))
         links = {"crank": LinkMotion(ORIGIN, direction, 1.0, None)}
         for name in self.carriers:
             turned_by = angle + 0.3 * turn + 0.4 * turn * turn
-            links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
+            links[name] = LinkMotion(self._joint(1, turn, tangent), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
         for name in self.carrying_joints:
             departure = add_vectors(joints[name].second, joints[name].position)
@@ -177,11 +177,11 @@ class _Stage(NamedTuple):
             place(self.group, placement)
         return placement
 
-    def _joint(self, order, turn, way):
+    def _joint(self, order, turn, tangent):
         """Motion of a carrying joint on an ellipse: from `position` for the first one, from near O for others."""
         sine, cosine = np.sin(turn), np.cos(turn)
-        way, bend = (rotate(part, ray(float(order))) for part in (way, (0.2, -0.4)))
-        along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
+        tangent, bend = (rotate(part, ray(float(order))) for part in (tangent, (0.2, -0.4)))
+        along, across = (self.size * np.array(part)[:, None] for part in (tangent, bend))
         still = 0.0 * self.angle
         place = self.position if order == 0 else (0.4 * order * self.size + still, -0.25 * order * self.size + still)
         position = np.array(place) + along * sine + across * (cosine - 1.0)
@@ -385,13 +385,13 @@ def _forces(stage, still):
 
     wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
     pushes = {name: any_vector()[0] for name in still.travels}
-    ways: dict[str, Any] = {
-        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"way": way, "alone": name}
+    motions: dict[str, Any] = {
+        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"tangent": tangent, "alone": name}
         for name in stage.carrying_joints
-        for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
+        for axis, tangent in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
     }
-    for name, way in (ways or {"the turn": {}}).items():
-        yield f"work of the forces along {name}", *_work(stage, stage.place_joints(**way), wrenches, pushes)
+    for name, tangent in (motions or {"the turn": {}}).items():
+        yield f"work of the forces along {name}", *_work(stage, stage.place_joints(**tangent), wrenches, pushes)
     inertia = {
         name: load(still.links[name], link.body, 9.81 / stage.size, 2.0 / stage.size, (3.0, -9.3))
         for name, link in stage.group.links.items()
