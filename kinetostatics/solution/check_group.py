@@ -159,7 +159,7 @@ class _Stage(NamedTuple):
         return {point.link for point in self.group.joints.values()} - {FRAME, *self.group.links}
 
     def place_joints(self, turn=0.0, tangent=(0.5, 0.3), alone=""):
-        """Placement with the crank turned on by `turn`, rad; carrying joints, or only `alone`, begin along `tangent`."""
+        """Placement with the crank turned by `turn`, rad; carrying joints, or only `alone`, leave along `tangent`."""
         angle = self.angle + turn
         direction = ray(angle)
         joints = {"O": ORIGIN}

@@ -1,8 +1,8 @@
 """Surge: waves in a spring with mass between a fixed foot and a slider.
 
-In a uniform spring of stiffness c and mass m the displacement u(h, t), at the fraction h of the length from the foot,
-obeys the wave equation m u_tt = c u_hh (Wahl, *Mechanical Springs*, 1963, chapter 13). With the end moving as sin(s t)
-the solution is u = sin(z h) / sin(z) sin(s t), z = s sqrt(m / c). The end pushes back with c u_h at h = 1:
+The displacement u(h, t) of a uniform spring is at the fraction h of its length from the foot. With stiffness c and mass
+m it obeys the wave equation m u_tt = c u_hh (Wahl, *Mechanical Springs*, 1963, chapter 13). For an end that moves as
+sin(s t), u = sin(z h) / sin(z) sin(s t), z = s sqrt(m / c). The end pushes back with c u_h at h = 1:
 
     dynamic stiffness  c z cot z  =  c - m s^2 / 3 - ...
 

@@ -31,7 +31,7 @@ class PlausibleRange(NamedTuple):
     """Plausible magnitudes of a nonzero number; a number outside probably has the wrong unit.
 
     `most` and `least` are limits in the SI `unit`; with `in_links` they are multiples of the longest link. `advice` is
-    the question in the hint. `factor` converts to SI from the unit that was probably meant; 0 if none is known.
+    the question in the hint. `factor` converts to SI from the unit that was probably meant; 0 if unknown.
     """
 
     most: float

@@ -56,8 +56,8 @@ def turned_to_length(vector, angle, length):
 def slider_by_double_cross(A, coupler_length, W1, W2, W):
     """Position of the slider pin by double cross product, acos and the sign of a mixed product (Kotov 2024, figure 3).
 
-    Steps: the perpendicular AC from A to the guide W1-W2, the angle CAB by acos, its side by the sign of a mixed
-    product, a special case for A on the guide. There, on an inclined guide, rounding may make the last two disagree.
+    Steps: perpendicular AC from A to the guide W1-W2, angle CAB by acos, its side by the sign of a mixed product, a
+    special case for A on the guide. Near it, for an inclined guide, rounding may make sign and special case disagree.
 
     Parameters
     ----------
@@ -102,8 +102,8 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
     """Coupler and rocker angle of the chain unit by atan and acos, and their rates by the two-component formulas.
 
     As in the Belarusian study of the chain unit: phi = angle - phi_0 is clockwise from the frame line O-O2, and B is to
-    the left of A -> O2. The coupler angle is correct only while x of A is less than that of O2, the rocker angle only
-    while b - r cos(phi) > 0; elsewhere atan is wrong by half a turn.
+    the left of A -> O2. The coupler angle is correct while x of A is less than x of O2, the rocker angle while b - r
+    cos(phi) > 0. Elsewhere atan is wrong by half a turn.
 
     Parameters
     ----------
@@ -147,8 +147,8 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
 def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_x, angle):
     """Angular accelerations of coupler and rocker of the chain unit by the study's equations (11)-(14), (19)-(22).
 
-    Each is a sum of two derivatives: of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2 and
-    (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they follow from its
+    Each is a sum of two derivatives. Those are of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2
+    and (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they follow from its
     derivation. For the study's dimensionless forms give the lengths rho, 1, lambda and sqrt(1 - rho^2).
 
     Parameters

@@ -86,7 +86,7 @@ def group_and_label(path, links):
 
 
 def range_of(path, value, values, units):
-    """Range of a number, SI: half a turn each way for angles, 0 to twice the value otherwise, both ways for coordinates."""
+    """Range of a number, SI: half a turn each way for angles, else 0 to twice the value, both ways for coordinates."""
     unit, dimension = units[path], dimension_name(units[path])
     if dimension == "angle":
         return min(-math.pi, value), max(math.pi, value)
