@@ -1,7 +1,7 @@
-"""Reductions of quantities on pieces of the period, of many designs, and the weights of the values in each.
+"""Reductions of a quantity of many designs from its values on pieces of the period, and derivatives of reductions.
 
-Near a design a reduction is a weighted sum of the values at the points: weights of the series at the peak, or of
-the integral. The weights give the derivatives of a reduction from those of the values.
+For small changes of a design a reduction is a weighted sum of the values at the points. With the same weights the
+derivatives of the values give the derivative of the reduction.
 """
 
 from dataclasses import replace
@@ -12,17 +12,17 @@ from .piecewise import rolled, rule
 from .reductions import OVER_THE_ANGLE, PEAKS, combined_peaks, is_rough, signs
 
 MAX_OUTPUT_ERROR = 1e-9
-"""Largest error of an output relative to the largest value of its quantity."""
+"""Default goal: largest error of an output relative to the largest value of its quantity."""
 TYPICAL_UNCERTAIN_PIECES = 8
-"""Typical number of uncertain pieces that share the error of an integral."""
+"""Pieces that typically share the error of an integral: one piece may cause this part of the goal."""
 ERROR_FACTOR = 4.0
-"""Sum of all missing terms of a series relative to its last known ones; at a kink they decrease slowly."""
+"""Error of a series relative to its last known terms; near a kink the terms left out decrease slowly."""
 
 
 def averaged(pieces, output, values, vector=False):
     """Mean, rms or amplitude of a harmonic of each design, (designs,), and weights (pieces, points) of the values.
 
-    Magnitudes of a `vector` do not change sign.
+    Values of a `vector` are magnitudes, so "mean_absolute" is their mean.
     """
     kind, order = output.reduction, output.order
     weights = pieces.half * rule(pieces.count).weights / pieces.period
@@ -41,9 +41,9 @@ def averaged(pieces, output, values, vector=False):
 
 
 def _weights_of_magnitudes(pieces, values):
-    """Weights (pieces, points) of values in the integrals of their magnitudes.
+    """Weights (pieces, points) with which values give the integral of their magnitude.
 
-    Between two zeros the integral gives the sign; a value at the start of a piece may be 0 or rounding.
+    The sign between two zeros is that of the integral between them: single values there may be 0 or rounding.
     """
     found = np.where(values < 0.0, -1.0, 1.0) * rule(pieces.count).weights
     series = pieces.series(values)
@@ -61,17 +61,17 @@ def _weights_of_magnitudes(pieces, values):
 
 
 def gained(pieces, values):
-    """Integral at each point of values less their mean over the period, from the start of the period."""
+    """Integral (pieces, points) over the crank angle, rad, from the start of the period, of values less their mean."""
     mean = pieces.sums(pieces.piece_integrals(values)) / pieces.period
     return pieces.integral_from_start(values - mean[pieces.owner, None])
 
 
 def _peaks(pieces, reduction, values, vector):
-    """Reduction (designs,) of peaks, crank angles in rad for `OVER_THE_ANGLE`, and the height of the peak."""
+    """Reduction (designs,) to a peak, for "largest_at" and "smallest_at" its crank angle, rad; and the peak's value."""
     low, high = values.min(axis=1), values.max(axis=1)
     middle, rise = 0.5 * (high + low), 0.5 * (high - low)
     line = middle[:, None] + rise[:, None] * rule(pieces.count).points
-    values = np.where(pieces.can_split[:, None], values, line)  # a jump
+    values = np.where(pieces.can_split[:, None], values, line)  # too narrow: contains a jump
     heights, angles = [], []
     for sign in signs(reduction):
         height, piece, place = pieces.peaks(sign * values)
@@ -84,9 +84,9 @@ def _peaks(pieces, reduction, values, vector):
 
 
 def _errors_of_peaks(pieces, values, errors, sides, vector):
-    """Error estimate (pieces,) of each piece's peak, in the quantity's unit; 0 where it cannot be the extreme.
+    """Error estimate (pieces,) of the peak of each piece, in the quantity's unit; 0 if it cannot have the extreme.
 
-    `sides` lists 1.0 for the largest value, -1.0 for the smallest; of a `vector` the values are squares.
+    `sides` contains 1.0 for the largest value, -1.0 for the smallest. Values of a `vector` are squared magnitudes.
     """
     series, found = pieces.series(values[:, 1:-1]), np.zeros(errors.shape)
     room = np.abs(series[1:]).sum(axis=0) + errors
@@ -100,9 +100,9 @@ def _errors_of_peaks(pieces, values, errors, sides, vector):
 
 
 def estimated(pieces, output, values, vector=False):
-    """Numbers (designs,) of an `Output`, and whether they are uncertain.
+    """Numbers (designs,) of an `Output`, and a mask of those that are uncertain.
 
-    `values` (pieces, points + 2) are at `Pieces.check_angles`; of a `vector` its magnitude, or for a peak its square.
+    `values` (pieces, points + 2) are at `Pieces.checked`: of a `vector` magnitudes, or their squares for a peak.
     """
     errors = np.where(pieces.can_split, ERROR_FACTOR * pieces.errors(values), 0.0)
     inner = values[:, 1:-1]
@@ -123,29 +123,29 @@ def estimated(pieces, output, values, vector=False):
     return found, is_rough(output, found, error, lambda rough: size[rough])
 
 
-def row_of(output, vectors):
-    """Quantity of an output, and whether its square is needed: a magnitude, unlike its square, has a corner at 0."""
+def values_key(output, vectors):
+    """Quantity of an output, and whether it is reduced by its square: a magnitude has a kink at 0, its square none."""
     return output.quantity, bool(vectors[output.quantity]) and output.reduction in PEAKS
 
 
 def resolved(pieces, outputs, vectors, evaluate, goal=MAX_OUTPUT_ERROR):
-    """Pieces halved until outputs are certain, and values (pieces, points + 2) by `row_of` the outputs.
+    """Halve pieces until outputs reach the goal, within the limits of `Pieces.resolved`; values by `values_key`.
 
     Parameters
     ----------
     pieces : Pieces
     outputs : sequence of Output
     vectors : mapping of quantity to bool
-        Whether it is a vector.
+        Whether the quantity is a vector.
     evaluate : function
-        From crank angles (P, N) and designs (P,) of pieces to values (P, N) by quantity, of vectors magnitudes.
+        From crank angles (P, N), rad, and designs (P,) of pieces to values (P, N) by quantity, for a vector magnitudes.
     goal : float
         Largest error of an output relative to the largest value of its quantity.
     """
-    sides: dict = {row_of(output, vectors): set() for output in outputs}
-    integrals = {row_of(output, vectors) for output in outputs if output.reduction not in PEAKS}
+    sides: dict = {values_key(output, vectors): set() for output in outputs}
+    integrals = {values_key(output, vectors) for output in outputs if output.reduction not in PEAKS}
     for output in outputs:
-        sides[row_of(output, vectors)].update(signs(output.reduction) if output.reduction in PEAKS else ())
+        sides[values_key(output, vectors)].update(signs(output.reduction) if output.reduction in PEAKS else ())
 
     def rows(angle, designs):
         found = evaluate(angle, designs)

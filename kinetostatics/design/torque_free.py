@@ -1,14 +1,14 @@
 """Torque-free cams: the cam-balanced crank-slider with constant energy over the turn.
 
-Constant crank speed needs no torque if kinetic energy and potential energy of weight and springs have a constant sum.
-The search varies harmonics of the cam, the coupler's length, and rate and free position of the spring, with fixed ends
-of the stroke. First it minimises the sum of squares of the torque (Gauss-Newton, from the cosine law's cam), then the
-goal under limits.
+At constant crank speed no torque is needed if the sum of kinetic energy and potential energy (weight, springs) is
+constant. The search varies harmonics of the cam, the coupler's length, and rate and free position of the spring, with
+fixed ends of the stroke. First it minimises the sum of squares of the torque (Levenberg-Marquardt, from the cosine
+law's cam), then the goal under limits.
 
-If weight acts along the guide, in an upright machine, symmetric cams become torque-free. If it acts across the guide,
-the torque of half the coupler's weight is even in the crank angle from the guide. All other torque of a symmetric
-machine is odd, so no symmetric cam balances it. Sine terms, a torsion spring on the coupler, or a counterweight on the
-crank with an offset guide do; `weight_options` compares them.
+If weight acts along the guide, as in an upright machine, a symmetric cam can be torque-free. If weight acts across the
+guide, the coupler's weight on A has a torque that is even in the crank angle from the guide. All other torque of a
+symmetric machine is odd, so a symmetric cam cannot balance the even one. Sine terms, a torsion spring on the coupler,
+or a counterweight on the crank with an offset guide can; `weight_options` compares them.
 """
 
 import warnings
@@ -32,15 +32,15 @@ from .result import Found
 
 TORQUE, POSITION = "balancing_torque", "slider_position"
 LEAST_SQUARES_PASSES = ((2.0, 1.0), (2e3, 0.0))
-"""Weights of each pass, in mean torques: of the stroke's ends missed by half the stroke, and of the cam's waves. The
-first pass starts far away, the second keeps the ends."""
+"""By pass: weights of the error of the stroke's ends and of the cam's waviness, both relative to half the stroke. The
+first pass keeps the cam smooth, the second keeps the ends."""
 MAX_LEAST_SQUARES_STEPS = 100
 
 
 def least_squares(problem, start, values):
-    """Least-squares design for torque and errors of the stroke's ends, by Gauss-Newton steps.
+    """Values of the design with the least squares of torque and of errors of the stroke's ends.
 
-    Only numbers of the cam, the coupler and the linear spring change.
+    Only numbers of the cam, the coupler and the linear spring change, with a counterweight also the guide offset.
     """
     for weight, smooth in LEAST_SQUARES_PASSES:
         values = _least_squares_pass(problem, start, values, weight, smooth)
@@ -48,7 +48,7 @@ def least_squares(problem, start, values):
 
 
 def _least_squares_pass(problem, start, values, weight, smooth):
-    """Least squares with weights of the stroke's ends and of the cam's waves."""
+    """Values of the design after a pass with these weights; see `LEAST_SQUARES_PASSES`."""
     from scipy import optimize
 
     columns = [place for place, name in enumerate(problem.names) if name in start.first]
@@ -88,7 +88,7 @@ def waviness(name):
 MIN_ANGLES, ANGLES_PER_HARMONIC = 360, 32
 """Fewest crank angles, and crank angles per harmonic of the cam."""
 BOUND_MARGIN = 1.05
-"""Limit, relative to the bound of symmetric cams, above which the search is refused; the bound varies with the cam."""
+"""Ratio of a limit to `ratio_bound` above which the search is refused; above 1, for the bound varies with the cam."""
 REPORTED_OUTPUTS = (
     "ratio mean_absolute balancing_torque",
     "mean_absolute balancing_torque",
@@ -134,8 +134,8 @@ def torque_free_cam(
     Parameters
     ----------
     source : Case, Scene or variant
-        A crank-slider, plain or with a cam. Its masses, speed and loads are constant; friction and crank acceleration
-        are left out with a `HintWarning`. In a case, by default the first variant besides the reference.
+        A crank-slider, plain or with a cam, or a case (by default its first variant besides the reference). Unless
+        varied, masses, speed and loads except springs stay; friction and crank acceleration are left out with a hint.
     cosine, sine : int
         Harmonics of the cam.
     minimise, maximise : str, optional
@@ -157,22 +157,22 @@ def torque_free_cam(
     cubic : (low, high), optional
         Bounds of the spring's cubic term, N/m3; without it the spring is linear.
     vary : dict of path to (low, high), optional
-        Further varied numbers, or other bounds.
+        Bounds of further parameters, or other bounds of those that vary anyway.
     shaft_radius : float, optional
         Radius of the shaft at O for the report, m; by default that of the source's friction at O.
     robust, variant, reference, starts, seed, engine, progress
-        As for `optimise`. Further starts have harmonics anywhere within a tenth of the cam's radius.
+        As for `optimise`. Further starts are circles about O with random harmonics of up to a tenth of their radius.
 
     Returns
     -------
     Found
-        Its report warns if the cam cuts into the shaft. Its `bound` is the largest ratio of mean torques of a
-        symmetric cam under weight.
+        Its report warns if the cam cuts into the shaft. Its `bound` is the largest ratio of the reference's mean
+        torque to that of a symmetric cam under weight.
 
     Raises
     ------
     DesignError
-        No machine meets the demands: the coupler cannot make the stroke, or the limits are beyond these cams.
+        The coupler cannot make the stroke, no cam keeps the limits, or the machine has no masses.
     ParameterError
         The source is not a crank-slider, or a value is impossible.
 
@@ -210,20 +210,20 @@ def torque_free_cam(
     reported = (*task.outputs, *(parse_output(text, start.scene) for text in usual))
     try:
         found = best_design(problem, task, begins, reported, robust, progress)
-    except DesignError as error:  # with limited torque, other ways to balance weight
+    except DesignError as error:  # name other ways to balance weight if torque is limited
         nearest = begins[0] if error.values is None else np.array(list(error.values.values()))
         torque = any(isinstance(limit.output, Output) and limit.output.quantity == TORQUE for limit in task.limits)
         advice = _advice(start, problem, compared, nearest) if torque else ""
         raise DesignError(f"{error}{advice}", error.values) from None
-    rubbing = scene_of(source).friction.get("O")
-    shaft = getattr(rubbing, "radius", None) if shaft_radius is None else options.shaft_radius
+    friction = scene_of(source).friction.get("O")
+    shaft = getattr(friction, "radius", None) if shaft_radius is None else options.shaft_radius
     return replace(found, before=given, bound=ratio_bound(start, found.scene, compared), shaft_radius=shaft)
 
 
 def ratio_bound(start, scene, reference):
-    """Largest ratio of mean torques of a symmetric cam, which leaves the torque of the coupler's weight.
+    """Largest ratio of mean torques of a symmetric cam, which cannot balance the torque of the coupler's weight on A.
 
-    The weight rises and falls twice a turn by the largest height of A.
+    In a turn A rises and falls by twice its largest height h, so the mean magnitude of this torque is 4 W h / (2 pi).
     """
     if reference is None or not start.weight:
         return np.inf
@@ -234,7 +234,7 @@ def ratio_bound(start, scene, reference):
 
 
 def _without_friction(scene, gravity):
-    """The scene at constant speed without friction, and without gravity unless `gravity`; warns of omissions."""
+    """The scene at constant speed without friction, with weight only if `gravity`; a hint names the omissions."""
     left = [f"friction at {', '.join(scene.friction.acting)}"] if scene.friction.acting else []
     if np.any(scene.crank_acceleration):
         left.append("the crank acceleration")
@@ -249,7 +249,7 @@ def _without_friction(scene, gravity):
 
 
 def _require_possible(problem, start):
-    """Refuse a stroke that is impossible for couplers within the bounds."""
+    """Refuse a stroke that no coupler length within the bounds can make."""
     place = problem.names.index("coupler_length")
     shortest, longest = problem.low[place], problem.high[place]
     low, high = start.ends
@@ -273,7 +273,7 @@ def _require_within_bound(start, problem, limits, reference, values):
 
 
 def _advice(start, problem, reference, values):
-    """Sentence on other ways to balance weight if a symmetric cam cannot."""
+    """End of a message that names other ways to balance weight; empty if one is used or no bound exists."""
     limit = ratio_bound(start, problem.scene(values), reference)
     helped = any(name.startswith(("cam.sine", "torsion_spring", "crank.")) for name in problem.names)
     if helped or not np.isfinite(limit):
@@ -289,7 +289,7 @@ QUARTER_TURN = np.pi / 2
 
 
 def weight_options(source, cosine=8, *, variant=None, reference=None, counterweight=None, **options):
-    """Torque-free cams under weight, a row for each way to carry the weight.
+    """Table of torque-free cams under weight, a row for each way to balance the weight.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Values at crank angles that all designs of a sweep share, computed once.
 
-If masses, springs or loads vary, the motion does not. A program is split in two: the shared part, whose results are
-rows of tables for the other part. Sums are fused with products as in the whole, so all results keep their bits.
+If only masses, springs or loads vary, all designs have the same motion. The program is split in two: one loop computes
+the shared values, the other reads them as rows of a table. FMAs stay as in the whole program, so no result changes.
 """
 
 from typing import Any
@@ -15,16 +15,16 @@ from .program import Program
 from .simplify import drop_unused, fused_sums, operands_of
 
 MIN_SHARED_VALUES = 10_000_000
-"""Values (designs * angles) above which two loops replace one."""
+"""Least number of values, designs times angles, for which two loops replace one."""
 MIN_SHARE = 0.25
-"""Least fraction of operations shared by the designs."""
+"""Least share of the operations that all designs share, for which two loops replace one."""
 
 
 def shared_loop(program, numbers, angle, tables, count):
-    """Compiled loop for `count` designs that differ in some numbers, and its tables.
+    """Compiled loop for `count` designs, and its tables: the given ones, with rows of shared values if it is split.
 
-    Numbers of the recording are floats or, where they vary, arrays (designs, 1); angles are (1 or designs, N), tables
-    (T, 1 or designs, N).
+    `numbers` are the parameters of the recording, floats or, where they vary, arrays (designs, 1). `angle` is (1 or
+    designs, N), rad, `tables` are (T, 1 or designs, N).
     """
     if count * angle.shape[1] < MIN_SHARED_VALUES or len(angle) > 1 or tables.shape[1] > 1:
         return program.loop, tables
@@ -39,9 +39,9 @@ def shared_loop(program, numbers, angle, tables, count):
 
 
 def split_common(outputs, varied, first=0):
-    """Shared nodes, and outputs in a graph that reads them as rows of tables, starting with row `first`.
+    """Nodes of the shared values, and outputs in a new graph that reads these values as table rows from `first` on.
 
-    `varied` is the set of places of the parameters that vary.
+    `varied` is the set of indices of the parameters that vary.
     """
     nodes = needed(outputs)
     sums = fused_sums(nodes)

@@ -1,7 +1,7 @@
 """Structural group: the protocol through which the library sees the parts of a mechanism.
 
 Motion flows outward from the crank, group by group; forces flow inward from the last group to the crank. A group is a
-frozen dataclass (``eq=False``) derived from `Group`. Only this protocol gives the library its links and their names.
+frozen dataclass (``eq=False``) derived from `Group`. The library knows its links and names through this protocol only.
 
 Declarations
 ------------
@@ -10,21 +10,21 @@ in a `Declaration`, named without the label; `Group` adds the label and makes th
 
     links, references, joints, bars, guides, slots, led, pairs, outputs, motions, contacts, lengths
 
-A table that follows another rule is its own property, with labelled names. Reactions and forces with their units,
-`outputs`, follow from `pairs`. Other lists are
+A group may override the property of a table; its names must then have the label. `outputs`, the reactions and forces
+with their units, follows from `pairs`. Other lists are
 
     hangs_on     joints that the group is attached to
-    knots        crank angles at which the law of a cam bends or jumps
-    curves       joints on a curve, with its name in drawings
+    knots        each `Breakpoint` of the law of a cam that leads it
+    curves       joints that run on a curve, with its name in drawings
     rollers      radii by joint
     outlines     curves (2, K) fixed to links, in their axes
     dimensions   lengths and angles of a drawing (`machine.dimensions`)
 
 Kernels, without branches on values
 -----------------------------------
-    place(placement)                  adds joints and links, from the joints it is attached to
+    place(placement)                  adds its joints and links, found from the joints it is attached to
     closure(placement)                margin at each crank angle: negative where it is open, small near a limit position
-    requirement(placement)            condition for its assembly, with its numbers, for the error message
+    requirement(placement)            text for the error message: condition for its assembly, with the lengths
     resolve(placement, loads, along)  forces on its links, and the wrenches that other links supply: a `Resolved`
 
 and optionally
@@ -33,36 +33,36 @@ and optionally
     motion(name, placement)           value of a quantity of `motions`
     elongation(placement, position)   coordinate of a slider less a position, without cancellation
     departure(placement, position)    second derivative of that coordinate plus the elongation, or None
-    outward(placement, position)      elongation, or its opposite, as a length of the design and the rest, or None
+    outward(placement, position)      elongation up to its sign, as a pair: constant length and small rest; or None
     sliding(name, placement)          direction and rate of a sliding pair: a `Slide`
-    relative_radius(name, placement, side)  radius of the relative curvature of a contact, by the sign of its force
+    relative_radius(name, placement, side)  radius of the relative curvature of a contact, for a sign of its force
 
 *Fields.* Lengths, a `Guide` or a pivot, an assembly of +1 or -1, the links, and the names of joints ``on`` and ``pin``.
 ``label`` is the suffix of link and force names where a mechanism has two groups of a kind. ``plane`` is its position
 along the crankshaft, or None (`machine.planes`), by the rule `PLANE`. ``PATHS`` renames fields in paths
-such as "coupler_length2"; "" leaves a name out. A field ``cam`` holds a curve with ``polar(angle, ray) -> r, r',
-r''``, which need not be arithmetic: engines tabulate it. Lengths may be arrays (designs, 1): write kernels with
+such as "coupler_length2"; a field renamed "" has no name there. A field ``cam`` holds a curve with ``polar(angle, ray)
+-> r, r', r''``; its code is free, because engines tabulate it. Lengths may be arrays (designs, 1): write kernels with
 ``+ - * /`` and `numbers.arithmetic`, never with ``if``, ``max`` or ``math``; then they also run on recorded numbers and
-on enclosures. ``None`` is a zero that costs no time (`numbers.planar` adds it).
+on enclosures. ``None`` is a zero that costs no time; the functions of `numbers.planar` accept it.
 
 *place* reads ``placement.joints[self.on]``, a `Joint`: position, first and second derivative by the crank angle, each
 (x, y). `enter` adds each joint of `joints` and a `LinkMotion` for each link (reference joint, unit vector, d theta / d
-phi and its slope; None: it never turns). For each slider it adds its coordinate along its guide with both derivatives,
-and it keeps the motion that `resolve` needs again. ``placement.courses`` takes a `Course` for a joint whose motion is
-known without the rounding of its position.
+phi and its slope; None: it never turns). For each slider it adds the coordinate along its guide with both derivatives.
+It also keeps the motion that `resolve` needs again. ``place`` may add a `Course` to ``placement.courses`` for a joint
+whose motion is known without the rounding of its position.
 
 *resolve* is a pure function. ``loads`` maps each link to the wrench on it about its reference joint: inertia, weight
 and the demands of outer groups. ``along`` maps each slider to the applied force along its guide, kept separate because
-it may nearly cancel with inertia. The equilibrium of the links gives the unknown forces *on* them. It must be linear in
-the loads, because friction calls it several times. ``demands`` are the wrenches on the group that other links supply.
+it may nearly cancel with inertia. The equilibrium of the links gives the unknown forces *on* them. They must be linear
+in the loads, because friction superposes loads. ``demands`` are the wrenches on the group that other links supply.
 
-*Change points.* Groups that pass them derive from `groups.branches.Branch`: ``on_crank(throws)`` sets the text
-`passage`, part of the structure; `turns`, `change_points` and `kink` follow from it. ``beside(groups, throws)`` returns
-the group specialised for its neighbours (toggles, and change points on a rocker).
+*Change points.* Groups that pass them derive from `groups.branches.Branch`. ``on_crank(throws)`` returns a group with
+the text `passage`, part of the structure; `turns`, `change_points` and `kink` follow from it. ``beside(groups,
+throws)`` returns the group specialised for its neighbours (toggles, and change points on a rocker).
 
-*Hand calculations.* `Solution.explain` shows what the kernels compute, under the names of their local variables. The
-module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``, for a single kernel as
-``"resolve.across"``, which may be an argument; primes count derivatives, ``"r'"``.
+*Hand calculations.* `Solution.explain` shows the values of the kernels under the names of their local variables. The
+group's module may give symbols and meanings in ``TERMS``: ``{"across": ("d", "from pin to guide")}``. The key
+``"resolve.across"`` is for one kernel, and may name an argument. Primes count derivatives: ``"r'"``.
 
 `ks.check(group)` tests a group; tests/machine/test_group.py has a whole example.
 """
@@ -79,7 +79,7 @@ from ..numbers.lazy import cached_property
 from .links import CamDriven, Link, Meshing, Rolling, Sliding, Slot, Turning, Wrench, present
 
 FRAME, CRANK = "frame", "crank"
-"""Link that does not move, and the link of every crank."""
+"""Names of the fixed link and of the crank's link."""
 MEMBERS = ("links", "references", "joints", "outputs", "bars", "place", "closure", "requirement", "resolve")
 RATES = ("_rate", "_angular_acceleration")
 """Endings of the quantities of a link."""
@@ -93,7 +93,7 @@ BEARINGS = {"O left": "left", "O right": "right"}
 """Quantities of a crankshaft on two bearings: the reactions at O by the bearing."""
 POSITION = checks.Number("m", usual=checks.PLAUSIBLE_BY_UNIT["m"])
 PLANE = checks.Optional(POSITION)
-"""Rules of a position along the crankshaft, and of that of a group or pin."""
+"""Rules of a position along the crankshaft, m, and of the plane of a group or pin, which may be None."""
 RESERVED = (
     "balancing_torque_by_power",
     "shaking_force",
@@ -154,8 +154,8 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 class Declaration(NamedTuple):
     """Parts of a group, named without the label.
 
-    `Group` names and describes the reactions of `pairs`. `lengths` holds the numbers in m except mass centres: by
-    default bars, offsets of guides and slots, and fixed joints.
+    `Group` names and describes the reactions of `pairs`. `lengths` holds all lengths except those of mass centres: by
+    default bars, offsets of guides and slots, and coordinates of fixed joints, m.
     """
 
     joints: Mapping[str, Point] = EMPTY
@@ -186,27 +186,27 @@ def _declared(table, doc):
 
 
 class Part:
-    """Crank or structural group: tables of its parts and results, with the label; see the module."""
+    """Crank or structural group: tables of its links, joints and forces, named with the label; see the module."""
 
     LINKS: ClassVar[dict[str, str]] = {}
     """Fields that hold links (and name them), each with the field that names its reference joint."""
     TRUSTED = False
-    """Whether tests prove that its forces balance and its names come from its texts: true for the library's own."""
+    """Whether tests prove that its forces balance and its fields of text give all names; True for the library's own."""
     trusted = False
-    """`TRUSTED` of this class itself, for a derived class may differ."""
+    """`TRUSTED` as this class sets it; it is not inherited, for a derived class may have other forces."""
     declaration: Any = Declaration()
     label: Any = ""
     """Suffix of its names and parameter paths, for a second group of its kind."""
     curves: Any = EMPTY
     """Joints that run on a curve, each with the name of the curve in drawings."""
     rollers: Any = EMPTY
-    """Radii of rollers by the joints that are their centres, m; None where it is not known."""
+    """Radius of each roller by the joint at its centre, m; None if unknown."""
     sign_forces: Any = ()
     """Forces, by name, at whose change of sign other forces have a kink."""
     throws: Any = EMPTY
     """Pins of the crank that it adds, each a `Throw`."""
     dimensions: Any = EMPTY
-    """What its numbers measure on a drawing, by their steps (`machine.dimensions`)."""
+    """Dimensions on a drawing, by field names and indices of the number measured (`machine.dimensions`)."""
 
     def __init_subclass__(cls, **options):
         super().__init_subclass__(**options)
@@ -216,7 +216,7 @@ class Part:
 
     @property
     def names(self):
-        """Texts from which its names follow."""
+        """Values of its text fields, from which the names of its parts follow."""
         return [value for value in self.__dict__.values() if value.__class__ is str]
 
     def called(self, name):
@@ -262,7 +262,7 @@ class Part:
 
     @property
     def lengths(self):
-        """All lengths, including the coordinates of mass centres, to estimate the condition; m."""
+        """All lengths, including the coordinates of mass centres, to estimate the condition number; m."""
         own = self.declaration.lengths
         if not own:
             fixed = (point for point in self.joints.values() if point.link == FRAME)
@@ -272,7 +272,7 @@ class Part:
 
     @property
     def reaches(self):
-        """Lengths of bars and cam radii, m; the shortest one enters the condition."""
+        """Lengths of bars, of cams the smallest radius, m; the shortest of a mechanism enters the condition number."""
         return [bar.length for bar in self.bars]
 
     # Forces and quantities
@@ -281,8 +281,8 @@ class Part:
     def pairs(self) -> dict[str, Any]:
         """Pairs of links, by the name of the reaction or force.
 
-        A reaction has the name of its joint: with the label if the group is attached to that joint, with the link if it
-        is attached to several. Other pairs have a `name`.
+        A reaction has the name of its joint. At a joint to which the group is attached, the label follows; if there are
+        several, also the link precedes. Other pairs have a `name`.
         """
         found: dict[str, Any] = {}
         for pair in self.declaration.pairs:
@@ -330,31 +330,31 @@ class Group(Part):
     LAW = ("r", "m")
     """Letter and unit of the values of a curve in the field `cam`."""
     passage, is_close = "", False
-    """Kind of change points that it passes, "" for none; whether it comes close to a limit position."""
+    """Kind of change points that it passes, "" for none; whether it needs kernels for close limit positions."""
     is_rigid_triangle = False
     """Whether its links never turn relative to the single link that carries all joints it is attached to."""
     knots: Any = ()
-    """Where the law of a cam that leads it bends or jumps, each a `Breakpoint`."""
+    """Breakpoints of the law of a cam that leads it, each a `Breakpoint`."""
     outlines: Any = EMPTY
-    """Curves fixed to links, points (2, K) in the axes of each."""
+    """Curves fixed to links, points (2, K) in the axes of the link, m."""
     turns: Any = 1
-    """Turns of the crank after which its branch closes."""
+    """Turns of the crank after which its motion repeats: 2 for some change points."""
     carrier: Any = ""
-    """Rocker on whose pin it passes change points; "" for none."""
+    """Name of the rocker that carries it, if it passes change points on its pin; "" otherwise."""
 
     def with_link(self: Any, name, link):
-        """The group with other mass properties of one link; the field has the name of the link without the label."""
+        """A copy with other mass properties of the link `name`, given with the label."""
         return replace(self, **{self.own_names[name]: link})
 
     def of_links(self, table) -> Any:
-        """Entries of a table for its links, in the order of `LINKS`; None without one."""
+        """Entries of a table by link, for its own links in the order of `LINKS`; None where the table has none."""
         return [table.get(self.called(name)) for name in self.LINKS]
 
     def enter(self, placement, motion, joints=EMPTY, links=None, travels=EMPTY):
         """Add to a placement joints by name, links and travels by name without the label, and `motion` for `placed`.
 
-        `placement.details` keeps `motion` under the name of the first link. By default the links are the first
-        fields of `motion`, in the order of `LINKS`, with reference joints of theirs.
+        By default the links are the first fields of `motion`, in the order of `LINKS`. Their reference joints are added
+        too, except those that the group is attached to. `placement.details` keeps `motion` by the first link's name.
         """
         placement.joints.update(joints)
         if links is None:
@@ -367,7 +367,7 @@ class Group(Part):
         placement.details[self._key] = motion
 
     def placed(self, placement):
-        """Motion that `enter` keeps."""
+        """The `motion` that `enter` has kept for `resolve`."""
         return placement.details[self._key]
 
     @property
@@ -390,11 +390,11 @@ class Group(Part):
     # Change points
 
     def on_crank(self, throws):
-        """The group specialised for the pins of a crank: its structure depends on their lengths too."""
+        """The group specialised for the pins of a crank, whose lengths may decide its structure; or itself."""
         return self
 
     def beside(self, groups, throws):
-        """The group specialised for the other groups of its chain, on the pins of a crank."""
+        """The group specialised for the other groups of its chain and the pins of the crank; or itself."""
         return self
 
     @property
@@ -404,11 +404,11 @@ class Group(Part):
 
     @property
     def through(self):
-        """Whether it would pass change points."""
+        """Whether its `assembly` is a word, "open" or "crossed", which asks for a passage through change points."""
         return type(getattr(self, "assembly", 1)) is str
 
     def kink(self, throws):
-        """Sentence on its motion at change points that it does not pass; "" without any."""
+        """Sentence on the kink of its motion at change points that it does not pass; "" if it has none."""
         return ""
 
     def change_points(self, throws):
@@ -435,7 +435,7 @@ Plane = Annotated[Any, PLANE]
 
 
 def separation(placement, first, second):
-    """Begin a requirement with the distances of two joints at the crank angles."""
+    """Begin of a requirement: the range of the distance between two joints over the crank angles, m."""
     start, end = (placement.joints[name].position for name in (first, second))
     apart = np.hypot(end[0] - start[0], end[1] - start[1])
     return f"the distance from {first} to {second}, {apart.min():.6g} to {apart.max():.6g} m here, must"

@@ -102,7 +102,7 @@ def spring_hints(mechanism, loads, crank_speed):
 def _surge_hints(mechanism, spring, crank_speed):
     if not all(map(checks.has_known_values, (spring.stiffness, spring.mass, spring.cubic, crank_speed))):
         return
-    found = surge.drive_of(mechanism, spring.on)
+    found = surge.highest_harmonic(mechanism, spring.on)
     if found is None or not np.any(crank_speed):
         return
     order, position = found

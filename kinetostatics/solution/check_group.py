@@ -1,9 +1,9 @@
-"""Test of a user's group, independent of its formulas: differences of positions, rigid links, and virtual work.
+"""Test of a user's group, independent of its formulas: difference quotients, rigid links, and virtual work.
 
-The test moves the joints that the group is attached to, from many places in which the group closes. Velocities and
-accelerations must agree with differences of positions. Each link's state must agree with those of its joints, guides
-and slots. The forces on the joints must do the work of the loads for any motion of a joint (d'Alembert and Lagrange;
-true for any ideal constraint). All errors are relative to the largest value.
+The test moves the joints to which the group is attached, from up to 24 positions at which the group can be assembled.
+Both derivatives of its motion must agree with difference quotients. The motion of each link must agree with that of its
+joints, guides and slots. The virtual work of all forces must be zero for any motion of a joint, as for every ideal
+constraint. Errors are relative to the largest value, or to the size of the group if that is larger.
 """
 
 from dataclasses import dataclass, replace
@@ -36,7 +36,7 @@ from ..numbers.planar import (
 
 STATE_NAMES = ("position", "velocity", "acceleration")
 MAX_RELATIVE_ERROR = 1e-6
-"""Largest error that passes; correct groups reach 1e-10, a wrong term gives about 1."""
+"""Largest relative error that passes; correct groups have about 1e-10, a wrong term gives about 1."""
 ANGLE_STEP = 2.0**-8
 WEIGHTS = (4 / 5, -1 / 5, 4 / 105, -1 / 280)
 """Weights of a central difference of the eighth order, with steps of `ANGLE_STEP` rad."""
@@ -60,7 +60,7 @@ class GroupReport:
 
     @property
     def problems(self):
-        """A sentence for each check that fails."""
+        """Texts, one for each check that fails, with its error."""
         return tuple(f"{what}: off by {error:.2g} of its size" for what, error in self.errors.items() if _fails(error))
 
     @property
@@ -85,24 +85,24 @@ def _fails(error):
 
 
 def check(group):
-    """Test a group, especially your own: its derivatives, forces and power.
+    """Test a group, especially your own: derivatives of its motion, forces and power.
 
     Parameters
     ----------
     group : SliderGroup, RockerGroup, CamRoller or similar
-        Its members are listed in `kinetostatics.machine.group`; a single design.
+        A single design; `kinetostatics.machine.group` lists the members that a group of your own needs.
 
     Returns
     -------
     GroupReport
-        True if all checks pass; its text has a line for each check, `problems` a sentence for each that fails.
-        Reactions inside the group are tested only through their sum at the joints it is attached to.
+        True if all checks pass. Its text has a line for each check, `problems` a text for each one that fails.
+        Reactions inside the group are not tested one by one, only the demands that result from them.
 
     Raises
     ------
     ParameterError
-        A member is missing, or `place` adds less than the group declares. `closure` is no number for each crank angle
-        or not negative where `place` finds no position, or the group closes nowhere at its scale.
+        A member is missing, `place` adds less than the group declares, or the group cannot be assembled near O. Or
+        `closure` is not a number at each crank angle, or is not negative where `place` finds no position.
 
     Examples
     --------
@@ -114,19 +114,19 @@ def check(group):
     _, problem = checks.HasMembers(MEMBERS, "a group").check(group, "group")
     checks.require("check", problem)
     if getattr(group, "passes", False):
-        group = replace(group)  # the test moves its joint, and without a crank it has no change points
+        group = replace(group)  # as before `on_crank`: the test moves its joint freely, so there are no change points
     stage = _stage(group)
     errors: dict[str, float] = {}
-    for compare in (_shape, _points, _fixed_joints, _guides, _slots, _slidings, _derivatives, _forces):
+    for compare in (_links_and_courses, _points, _fixed_joints, _guides, _slots, _slidings, _derivatives, _forces):
         for what, found, expected, unit in compare(stage, stage.place_joints()):
             errors[what] = max(errors.get(what, 0.0), _error(found, expected, unit))
     return GroupReport(type(group).__name__, errors)
 
 
 def _error(found, expected, unit):
-    """Largest difference over the largest value, or over `unit` if larger, of the worst component.
+    """Relative error of the worst component: largest difference over the largest value, or over `unit` if larger.
 
-    Infinite if a value is not finite; an absent value is zero.
+    It is infinite if a value is not finite; None counts as zero.
     """
     errors = []
     for pair in zip(_components(found), _components(expected), strict=False):
@@ -141,7 +141,7 @@ def _components(value):
 
 
 class _Stage(NamedTuple):
-    """A group, its shortest length, and crank angles and places (x, y) of its first carrying joint: it closes there."""
+    """A group, its shortest bar, m, and crank angles with positions (x, y) of the first joint that carries it."""
 
     group: Any
     size: float
@@ -150,25 +150,25 @@ class _Stage(NamedTuple):
 
     @property
     def carrying_joints(self):
-        """Joints that it is attached to, except O."""
+        """Joints to which the group is attached, except O."""
         return [name for name in getattr(self.group, "hangs_on", ("O",)) if name != "O"]
 
     @property
     def carriers(self):
-        """Links of other groups to which it fixes a joint."""
+        """Links of other groups to which the group fixes a joint."""
         return {point.link for point in self.group.joints.values()} - {FRAME, *self.group.links}
 
-    def place_joints(self, turn=0.0, way=(0.5, 0.3), alone=""):
-        """Placement with the crank turned further; carrying joints, or only the joint `alone`, move along `way`."""
+    def place_joints(self, turn=0.0, tangent=(0.5, 0.3), alone=""):
+        """Placement with the crank turned by `turn`, rad; carrying joints, or only `alone`, leave along `tangent`."""
         angle = self.angle + turn
         direction = ray(angle)
         joints = {"O": ORIGIN}
         for order, name in enumerate(self.carrying_joints):
-            joints[name] = self._joint(order, turn, way if alone in ("", name) else (0.0, 0.0))
+            joints[name] = self._joint(order, turn, tangent if alone in ("", name) else (0.0, 0.0))
         links = {"crank": LinkMotion(ORIGIN, direction, 1.0, None)}
         for name in self.carriers:
             turned_by = angle + 0.3 * turn + 0.4 * turn * turn
-            links[name] = LinkMotion(self._joint(1, turn, way), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
+            links[name] = LinkMotion(self._joint(1, turn, tangent), ray(turned_by), 1.3 + 0.8 * turn, 0.8)
         placement = Placement(angle, direction, joints, links)
         for name in self.carrying_joints:
             departure = add_vectors(joints[name].second, joints[name].position)
@@ -177,11 +177,11 @@ class _Stage(NamedTuple):
             place(self.group, placement)
         return placement
 
-    def _joint(self, order, turn, way):
-        """One of the carrying joints: the first at the places, others near O."""
+    def _joint(self, order, turn, tangent):
+        """Motion of a carrying joint on an ellipse: from `position` for the first one, from near O for others."""
         sine, cosine = np.sin(turn), np.cos(turn)
-        way, bend = (rotate(part, ray(float(order))) for part in (way, (0.2, -0.4)))
-        along, across = (self.size * np.array(part)[:, None] for part in (way, bend))
+        tangent, bend = (rotate(part, ray(float(order))) for part in (tangent, (0.2, -0.4)))
+        along, across = (self.size * np.array(part)[:, None] for part in (tangent, bend))
         still = 0.0 * self.angle
         place = self.position if order == 0 else (0.4 * order * self.size + still, -0.25 * order * self.size + still)
         position = np.array(place) + along * sine + across * (cosine - 1.0)
@@ -190,7 +190,7 @@ class _Stage(NamedTuple):
 
 
 def _stage(group):
-    """The group at places where it closes well, chosen evenly from many."""
+    """The group at positions away from its limit positions, chosen evenly from a grid of 1200."""
     lengths = [float(np.max(bar.length)) for bar in group.bars] or [1.0]
     size, farthest = min(lengths), 30.0 * max(lengths)
     reach, direction = np.meshgrid(np.geomspace(0.02 * size, farthest, 40), 2 * np.pi * (np.arange(30) + 0.3) / 30)
@@ -217,8 +217,8 @@ def _stage(group):
 # Comparisons: name of the check, two values that must agree, and a size below which differences do not count
 
 
-def _shape(stage, placement):
-    """Lengths of bars, unit vectors, reference joints, and declared travels and courses."""
+def _links_and_courses(stage, placement):
+    """Lengths of bars, unit vectors and reference joints of links, elongations of sliders, and courses of joints."""
     group, size = stage.group, stage.size
     for bar in group.bars:
         ends = (vector_or_zero(placement.joints[name].position) for name in (bar.end, bar.start))
@@ -252,7 +252,7 @@ def _shape(stage, placement):
 
 
 def _points(stage, placement):
-    """Joints that are points of links, by position, velocity and acceleration."""
+    """Position and both derivatives of joints that are declared as points of links."""
     for name, (link, along, across) in stage.group.joints.items():
         owner, states = link, ((along, across), None, None)
         if link == FRAME:
@@ -265,7 +265,7 @@ def _points(stage, placement):
 
 
 def _fixed_joints(stage, placement):
-    """Joints that a link keeps at one place in its own axes: the end of a bar at its length, other pins anywhere."""
+    """Joints at a fixed place in the axes of a link: the end of a bar at its length, other pins at any place."""
     group = stage.group
     fixed = {(pair.link, pair.joint): None for pair in _declared(group, "pairs").values() if type(pair) is Turning}
     for bar in group.bars:
@@ -284,7 +284,7 @@ def _fixed_joints(stage, placement):
 
 
 def _guides(stage, placement):
-    """Sliders: the pin on the guide, the direction of the guide, and the travel along it."""
+    """Sliders: distance of the pin from the guide, direction along the guide, and travel with both derivatives."""
     for link, guide in _declared(stage.group, "guides").items():
         motion, direction = placement.links[link], guide.direction
         yield (
@@ -300,7 +300,7 @@ def _guides(stage, placement):
 
 
 def _slots(stage, placement):
-    """Joints that slide in the slot of a link: on the line of the slot."""
+    """Joints that slide in the slot of a link: distance from its line, and direction of the rod."""
     for slot in _declared(stage.group, "slots"):
         motion = placement.links[slot.link]
         axis = rotate((np.cos(slot.angle), np.sin(slot.angle)), motion.direction)
@@ -312,13 +312,13 @@ def _slots(stage, placement):
 
 
 def _slidings(stage, placement):
-    """Rates of sliding pairs, which give the sense of friction, as velocities of one link against the other."""
+    """Sliding pairs: rate, which gives friction its direction, by the links' relative motion; moment of the force."""
     for name, pair in _declared(stage.group, "pairs").items():
         if type(pair) is not Sliding:
             continue
         slide, joint = stage.group.sliding(name, placement), placement.joints[pair.joint]
         direction = (1.0, 0.0) if slide.direction is None else slide.direction
-        first = subtract_vectors(_velocity(placement, pair.link, joint), _velocity(placement, pair.against, joint))
+        first = subtract_vectors(_first_at(placement, pair.link, joint), _first_at(placement, pair.against, joint))
         yield f"rate of sliding of {name}", slide.rate, dot(direction, vector_or_zero(first)), stage.size
         if pair.against != FRAME:
             away = subtract_vectors(joint.position, placement.links[pair.against].joint.position)
@@ -326,12 +326,12 @@ def _slidings(stage, placement):
 
 
 def _declared(group, name):
-    """A declaration of a group; one not derived from `Group` may lack it."""
+    """A table of a group; empty if a group that is not derived from `Group` lacks it."""
     return getattr(group, name, {})
 
 
-def _velocity(placement, link, joint):
-    """Velocity of the point of a link at a joint."""
+def _first_at(placement, link, joint):
+    """First derivative by the crank angle of the point of a link at a joint."""
     if link == FRAME:
         return None
     motion = placement.links[link]
@@ -339,7 +339,7 @@ def _velocity(placement, link, joint):
 
 
 def _derivatives(stage, placement):
-    """Derivatives by crank angle against differences."""
+    """Derivatives by the crank angle against difference quotients; and placing twice gives the same motion."""
     here, again = (_rates(stage, each) for each in (placement, stage.place_joints()))
     beside = {
         step: [_rates(stage, stage.place_joints(side * step * ANGLE_STEP)) for side in (1, -1)]
@@ -352,7 +352,7 @@ def _derivatives(stage, placement):
 
 
 def _rates(stage, placement):
-    """Value, its derivative by the group, and a size below which differences do not count, by name."""
+    """By name of a derivative: value, its derivative by the kernel, and a size below which errors do not count."""
     moving = placement.joints.keys() - {"O", *stage.carrying_joints}
     joints = {f"joint {name}": placement.joints[name] for name in moving}
     joints |= {f"travel of {name}": travel for name, travel in placement.travels.items()}
@@ -375,7 +375,7 @@ def _rates(stage, placement):
 
 
 def _forces(stage, still):
-    """Work of the forces and the loads on small motions of each joint; the sum must be zero."""
+    """Virtual work of any loads for motions of each joint, and of weight and inertia; the demands make it 0."""
     if not stage.group.links:
         return
     random = np.random.default_rng(0)
@@ -385,13 +385,13 @@ def _forces(stage, still):
 
     wrenches = {name: Wrench(any_vector(), stage.size * any_vector()[0]) for name in stage.group.links}
     pushes = {name: any_vector()[0] for name in still.travels}
-    ways: dict[str, Any] = {
-        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"way": way, "alone": name}
+    motions: dict[str, Any] = {
+        f"{axis} of {name}" if len(stage.carrying_joints) > 1 else axis: {"tangent": tangent, "alone": name}
         for name in stage.carrying_joints
-        for axis, way in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
+        for axis, tangent in (("x", (1.0, 0.0)), ("y", (0.0, 1.0)))
     }
-    for name, way in (ways or {"the turn": {}}).items():
-        yield f"work of the forces along {name}", *_work(stage, stage.place_joints(**way), wrenches, pushes)
+    for name, tangent in (motions or {"the turn": {}}).items():
+        yield f"work of the forces along {name}", *_work(stage, stage.place_joints(**tangent), wrenches, pushes)
     inertia = {
         name: load(still.links[name], link.body, 9.81 / stage.size, 2.0 / stage.size, (3.0, -9.3))
         for name, link in stage.group.links.items()
@@ -401,7 +401,7 @@ def _forces(stage, still):
 
 
 def _work(stage, placement, wrenches, pushes):
-    """Sum of all work, zero, and its largest part."""
+    """Sum of all virtual work, the expected 0.0, and the size of its largest term."""
     resolved = stage.group.resolve(placement, wrenches, pushes)
     if not stage.group.trusted:
         checks.require("check", *output_problems(stage.group, resolved))

@@ -12,7 +12,7 @@ import numpy as np
 from ..cycle import piecewise_reductions
 from ..cycle.kinks import design_kinks
 from ..cycle.piecewise import Pieces
-from ..cycle.piecewise_reductions import MAX_OUTPUT_ERROR, row_of
+from ..cycle.piecewise_reductions import MAX_OUTPUT_ERROR, values_key
 from ..engines.program import program_of
 from ..errors import NotGivenError
 from ..machine.loads import KINK_TOLERANCE, TURN
@@ -85,7 +85,7 @@ class PiecewiseTurns(NamedTuple):
         return dict(zip(names, rows, strict=True))
 
     def refined(self, outputs):
-        """Yield blocks of designs: their numbers, refined pieces, and values by `row_of` outputs."""
+        """Yield blocks of designs: their numbers, refined pieces, and values by `values_key`."""
         vectors = {name: quantity(self.scene, name).vector for name in quantity_names(outputs)}
         step = max(1, BLOCK_VALUES * self.designs // self.pieces.check_angles.size)
         for start in range(0, self.designs, step):
@@ -104,7 +104,7 @@ class PiecewiseTurns(NamedTuple):
         with np.errstate(all="ignore"):
             for designs, pieces, values in self.refined(outputs):
                 for row, item in enumerate(outputs):
-                    own = values[row_of(item, vectors)]
+                    own = values[values_key(item, vectors)]
                     found[:, row, designs] = piecewise_reductions.estimated(pieces, item, own, vectors[item.quantity])
         return found
 

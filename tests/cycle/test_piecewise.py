@@ -6,7 +6,7 @@ import pytest
 import kinetostatics as ks
 from kinetostatics.cycle.kinks import design_kinks, has_kinks
 from kinetostatics.cycle.piecewise import MAX_UNRESOLVED, Pieces
-from kinetostatics.cycle.piecewise_reductions import MAX_OUTPUT_ERROR, averaged, estimated, resolved, row_of
+from kinetostatics.cycle.piecewise_reductions import MAX_OUTPUT_ERROR, averaged, estimated, resolved, values_key
 from kinetostatics.cycle.reductions import parsed
 from support.every import every
 
@@ -21,7 +21,7 @@ def on_pieces(output, function, breaks, width=WIDTH, period=TURN, vector=False):
     """Numbers of an output, and whether they are uncertain, on pieces between breaks that are not halved."""
     pieces = Pieces.between(breaks, period, min(width, TURN / (2 * (output.order or 0) or 1)), 10)
     values = function(pieces.check_angles, pieces.owner)
-    return estimated(pieces, output, values**2 if row_of(output, {output.quantity: vector})[1] else values, vector)
+    return estimated(pieces, output, values**2 if values_key(output, {output.quantity: vector})[1] else values, vector)
 
 
 def found(text, function, breaks=BREAKS, period=TURN, vector=False):

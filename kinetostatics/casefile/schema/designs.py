@@ -1,6 +1,6 @@
-"""Tables of designs: goal, numbers that vary, limits.
+"""Tables of designs: goal, parameters that vary, limits.
 
-Outputs, limits and bounds remain texts here, because their names depend on the variant; `casefile.designs` reads them.
+Outputs, limits and bounds stay texts, because the variant decides which names exist; `casefile.designs` checks them.
 """
 
 from typing import Annotated, Literal
@@ -28,18 +28,18 @@ Vary = Annotated[dict[str, Bounds], Field(min_length=1)]
 
 
 class RobustTable(Table):
-    """A quantile over the spread of numbers; keys are the arguments of `ks.design.Spread`."""
+    """Goal over a spread of parameters: the quantile of an output; keys are the arguments of `ks.design.Spread`."""
 
     quantile: Number
     """Quantile of the output, between 0 and 1."""
     spreads: dict[str, str]
-    """Spread of numbers by path, as in [tolerances]."""
+    """Spread of each parameter, as in [tolerances], by its path."""
     samples: Count = 256
     """Number of machines sampled in the search; a power of two."""
     trim: Number = 0.0
-    """Range of speed adjustment, relative to the crank speed; each machine runs at its best speed within it."""
+    """Largest adjustment of the crank speed, relative to it; each sampled machine runs at its best speed within it."""
     seed: Seed = 0
-    """Of the drawing."""
+    """Seed of the sampled machines."""
 
     @property
     def spread(self):
@@ -55,11 +55,11 @@ class DesignTable(Table):
     """Keys common to every design."""
 
     variant: str | None = None
-    """Variant that varies; by default the only one, or the first besides the reference."""
+    """Variant whose parameters vary; by default the only one, or the first besides the reference."""
     reference: str | None = None
     """Reference of ratios; by default the reference of the variant."""
     limits: tuple[str, ...] = ()
-    """Limits of outputs, at exact extremes."""
+    """Limits of outputs; the search keeps them at the exact extremes."""
     starts: Count = 1
     """Number of searches; the first begins at the variant itself."""
     seed: Seed = 0
@@ -72,7 +72,7 @@ class SearchTable(DesignTable):
     vary: Vary
     """Lowest and highest value, by path."""
     duties: dict[str, Number] | None = None
-    """Share of the time by variant, instead of one variant: outputs are weighted means, limits apply to each."""
+    """Share of the time by variant: outputs are weighted means; a limit applies to each, or to the one it names."""
     angles: Annotated[int, Field(strict=True, ge=12, le=100_000)] = 720
     """Crank angles over the period."""
 
@@ -84,16 +84,16 @@ class SearchTable(DesignTable):
 
 
 class OptimumTable(SearchTable):
-    """The best of any machine within bounds and limits."""
+    """Any machine with its best output within bounds and limits."""
 
     kind: Literal["optimum"]
-    """The best of any machine within bounds and limits."""
+    """Any machine with its best output within bounds and limits."""
     minimise: str | None = None
     """Output to minimise."""
     maximise: str | None = None
     """Output to maximise, instead of `minimise`."""
     robust: RobustTable | None = None
-    """Goal: a quantile over the spread of numbers."""
+    """Goal: the quantile of the output over a spread of parameters."""
 
     @model_validator(mode="after")
     def _one_aim(self):
@@ -112,13 +112,13 @@ class TorqueFreeCamTable(DesignTable):
     sine: Terms = 0
     """Sine terms of the cam."""
     vary: dict[str, Bounds] = Field(default_factory=dict)
-    """Further numbers that vary, or other bounds: lowest and highest value, by path."""
+    """Bounds (lowest, highest), by path, of further parameters or instead of the default ones."""
     minimise: str | None = None
     """Output to minimise; by default the mean magnitude of the torque."""
     maximise: str | None = None
     """Output to maximise, instead of `minimise`."""
     robust: RobustTable | None = None
-    """Goal: a quantile over the spread of numbers."""
+    """Goal: the quantile of the output over a spread of parameters."""
     ends: Annotated[tuple[float, float] | None, BeforeValidator(pair_of("m"))] = None
     """Extreme positions of the slider; by default as in the variant."""
     guide_offset: Coordinate | None = None
@@ -126,9 +126,9 @@ class TorqueFreeCamTable(DesignTable):
     coupler_spring: Angle | None = None
     """Free angle of a torsion spring between coupler and slider that carries the coupler's weight."""
     counterweight: Mass | None = None
-    """Mass on the crank; the search finds its place and a guide offset."""
+    """Mass on the crank; the search finds its place and the offset of the guide."""
     cubic: Annotated[tuple[float, float] | None, BeforeValidator(pair_of("N/m^3"))] = None
-    """Bounds of the springs' cubic term; without it they are linear."""
+    """Bounds of the spring's cubic term; without them the spring is linear."""
 
     @model_validator(mode="after")
     def _one_aim_at_most(self):
@@ -138,12 +138,12 @@ class TorqueFreeCamTable(DesignTable):
 
 
 class FrontTable(SearchTable):
-    """The best of one output for each value of another."""
+    """Designs on the Pareto front of two outputs."""
 
     kind: Literal["front"]
-    """The best of one output for each value of another."""
+    """Designs on the Pareto front of two outputs."""
     minimise: Annotated[tuple[str, ...], Field(min_length=2, max_length=2)]
-    """The two outputs."""
+    """The two outputs; a "-" before one maximises it."""
     points: Annotated[int, Field(strict=True, ge=2, le=100)] = 9
     """Number of designs on the front."""
 

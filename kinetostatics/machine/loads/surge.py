@@ -1,13 +1,13 @@
-"""Waves in a spring of mass between its foot and a slider.
+"""Surge: waves in a spring with mass between a fixed foot and a slider.
 
-A uniform spring of stiffness c and mass m has the displacement u(h, t) at the share h of its length. It obeys the wave
-equation m u_tt = c u_hh (Wahl, *Mechanical Springs*, 1963, chapter 13). With its foot at rest and its end moving as
-sin(s t) it is u = sin(z h) / sin(z) sin(s t), z = s sqrt(m / c). The end pushes back with c u_h at h = 1:
+The displacement u(h, t) of a uniform spring is at the fraction h of its length from the foot. With stiffness c and mass
+m it obeys the wave equation m u_tt = c u_hh (Wahl, *Mechanical Springs*, 1963, chapter 13). For an end that moves as
+sin(s t), u = sin(z h) / sin(z) sin(s t), z = s sqrt(m / c). The end pushes back with c u_h at h = 1:
 
     dynamic stiffness  c z cot z  =  c - m s^2 / 3 - ...
 
-Between fixed ends the spring swings at z = pi, pi sqrt(c / m) in rad/s, where the stiffness has no bound. The surge
-ratio is that frequency over s, pi / z.
+The natural frequency between fixed ends, pi sqrt(c / m) in rad/s, is at z = pi, where this stiffness is infinite. The
+surge ratio is the natural frequency over s, pi / z.
 """
 
 from typing import Any
@@ -16,15 +16,15 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 MIN_RATIO = 5.0
-"""Surge ratio below which even stretching is a poor model of a spring with waves.
+"""Surge ratio below which a spring that stretches evenly, without waves, is a poor model.
 
-There the stiffness of the end, c - m s^2 / 3 without waves, is wrong by c z^4 / 45 and more, 0.36 % of c."""
+At this ratio the end's stiffness without waves, c - m s^2 / 3, is in error by c z^4 / 45 + ..., 0.36 % of c."""
 HARMONIC_SHARE = 0.05
-"""Least acceleration of a harmonic of the slider's travel that counts, relative to the largest one."""
+"""Least harmonic of the slider's acceleration that counts, relative to the largest one."""
 SAMPLES = 256
-"""Crank angles a turn for these harmonics."""
+"""Crank angles per turn for the harmonics of the acceleration."""
 NEWTON_STEPS = 8
-"""Iteration steps for the root z of z tan z = m / M; they converge for every ratio."""
+"""Newton steps for the root z of z tan z = m / M, enough for every ratio of spring mass to carried mass."""
 
 
 def surge_frequency(stiffness, mass):
@@ -39,31 +39,31 @@ def end_stiffness(stiffness, mass, frequency):
 
 
 def wave_percentage(ratio):
-    """Change of the end's stiffness by waves at a surge ratio, as text: a share of the stiffness c."""
+    """Change of the end's stiffness by waves at a surge ratio, in per cent of the stiffness c, as text for a hint."""
     if ratio <= 1.0:
         return "more than itself"
     z = np.pi / ratio
     return f"{100.0 * abs(end_stiffness(1.0, 1.0, z) - (1.0 - z * z / 3.0)):.2g} %"
 
 
-_DRIVES: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
-"""By mechanism: results of `drive_of`, by slider."""
+_HIGHEST_HARMONICS: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+"""Results of `highest_harmonic` by mechanism, then by slider."""
 
 
-def drive_of(mechanism, slider):
-    """Highest significant harmonic of a slider's acceleration, per turn, and its coordinate, m; or None."""
-    known = _DRIVES.setdefault(mechanism, {})
+def highest_harmonic(mechanism, slider):
+    """Order of a slider's highest harmonic that counts, per crank turn, and its coordinate, m; None if unknown."""
+    known = _HIGHEST_HARMONICS.setdefault(mechanism, {})
     if slider not in known:
         count = SAMPLES * mechanism.turns
         with np.errstate(invalid="ignore", divide="ignore"):
             travel = mechanism.place(np.linspace(0.0, 2.0 * np.pi * mechanism.turns, count, endpoint=False)).travels[
                 slider
             ]
-        known[slider] = _drive_of(travel, mechanism.turns)
+        known[slider] = _highest_harmonic(travel, mechanism.turns)
     return known[slider]
 
 
-def _drive_of(travel, turns):
+def _highest_harmonic(travel, turns):
     if not all(isinstance(part, np.ndarray) and part.dtype.kind == "f" and np.isfinite(part).all() for part in travel):
         return None
     sizes = np.abs(np.fft.rfft(travel.second))[..., 1:]
@@ -75,7 +75,7 @@ def _drive_of(travel, turns):
 
 
 def balancing_stiffness(slider, spring):
-    """Spring stiffness c, N/m, whose moving end has the stiffness M w^2; `slider` is M w^2, `spring` is m w^2."""
+    """Stiffness c, N/m, with c z cot z = M w^2 at z = w sqrt(m / c); `slider` is M w^2, `spring` is m w^2, N/m."""
     ratio = np.where(spring == 0.0, 0.0, spring / slider)
     z = np.sqrt(ratio / (1.0 + ratio * (4.0 / np.pi**2)))
     for _ in range(NEWTON_STEPS):

@@ -1,7 +1,7 @@
-"""Rules of values, dataclasses that keep to a table of rules, and the plausible range of numbers.
+"""Rules that test and convert values, dataclasses with a rule for each field, and plausible ranges of numbers.
 
-A rule has ``quick(value)``, which returns the value to keep or `UNDECIDED`, and ``check(value, field)``, which returns
-the value to keep and its fault as a sentence, or None.
+A rule has ``quick(value)``, which returns the value to store or `UNDECIDED`. Its ``check(value, field)`` returns two
+things: the value to store, and its fault as a sentence or None.
 """
 
 import math
@@ -28,10 +28,10 @@ from .values import (
 
 
 class PlausibleRange(NamedTuple):
-    """Plausible magnitudes of a nonzero number; a number outside has probably the wrong unit.
+    """Plausible magnitudes of a nonzero number; a number outside probably has the wrong unit.
 
-    `most` and `least` are limits in the SI `unit`, or, `in_links`, in lengths of the longest link. `advice` is the
-    question of the hint. `factor` converts to SI from the unit that was probably meant; 0 if there is none.
+    `most` and `least` are limits in the SI `unit`; with `in_links` they are multiples of the longest link. `advice` is
+    the question in the hint. `factor` converts to SI from the unit that was probably meant; 0 if unknown.
     """
 
     most: float
@@ -43,16 +43,16 @@ class PlausibleRange(NamedTuple):
 
 
 MAX_LENGTH_IN_LINKS = 20.0
-"""Largest plausible length in lengths of the longest link; millimetres among metres give 1000."""
+"""Largest plausible length over that of the longest link; a length in mm among lengths in m gives 1000."""
 PLAUSIBLE_BY_UNIT = {
     "rad": PlausibleRange(2.0 * math.pi * (1.0 + 1e-9), "more than a whole turn; is it in degrees?", math.pi / 180.0),
     "m": PlausibleRange(MAX_LENGTH_IN_LINKS, "is it in mm?", 1e-3, in_links=True),
 }
-"""Plausible range by unit, for rules without one of their own."""
+"""Plausible range by unit, for rules without a range of their own."""
 
 
 def plausible_range_of(rule):
-    """Plausible range of a number by its rule; None if there is none."""
+    """Plausible range that a rule gives, else that of its unit; None without either."""
     found = rule.usual or PLAUSIBLE_BY_UNIT.get(rule.unit)
     return found and found._replace(unit=rule.unit)
 
@@ -77,17 +77,17 @@ def implausibility(path, value, usual, longest=0.0):
 
 
 MAX_NUMBER, MAX_LENGTH = 1e150, 1e75
-"""Bounds in double precision: of a number, whose square must not overflow, and of a length and its reciprocal."""
+"""Largest number, so that its square does not overflow; largest `strict` number, the reciprocal of the least one."""
 UNDECIDED: Any = object()
 """Result of ``quick`` for a value that needs ``check``."""
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number in a unit, or an array (designs, 1) of them; as a `table`, one for each crank angle.
+    """A number in a unit, or an array (designs, 1) of numbers; a `table` also has a number for each crank angle.
 
-    The unit is "1" for a ratio and "" if unknown; pint quantities are converted to it.
-    A number outside its `usual` range is accepted with a hint.
+    The unit is "1" for a ratio and "" if unknown; pint quantities are converted to it. `low` is the least number, with
+    `strict` excluded. A number outside its `usual` range is accepted; a hint may suggest another unit.
     """
 
     unit: str
@@ -143,7 +143,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Pair:
-    """A vector by its two components; `lone` numbers mean (number, 0)."""
+    """A vector by its two components; if `lone`, a single number means (number, 0)."""
 
     unit: str
     name: str = ""
@@ -185,7 +185,7 @@ class Pair:
         return self._examined((first, second), name)
 
     def numbers(self, value):
-        """Name, steps and rule of each number, for paths."""
+        """Yield name, indices and rule of each number, for parameter paths."""
         for place, part in enumerate(self.parts):
             yield part, (place,), self.rule
 
@@ -200,7 +200,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Series:
-    """Coefficients of a series, a tuple of numbers called by their order, from `start`; the `first` by its own rule."""
+    """Coefficients of a series, a tuple: their names are orders from `start` on; `first` is the rule of the first."""
 
     unit: str
     letter: str = "a"
@@ -233,7 +233,7 @@ class Series:
         return tuple(part for part, _ in found), next((problem for _, problem in found if problem), None)
 
     def numbers(self, value):
-        """Name, steps and rule of each number, for paths."""
+        """Yield name, indices and rule of each number, for parameter paths."""
         for place in range(len(value)):
             yield str(place + self.start), (place,), self._rule(place)
 
@@ -269,7 +269,7 @@ class OrFunction:
 
 @dataclass(frozen=True)
 class InstanceOf:
-    """An instance of a class; the message quotes `words`."""
+    """An instance of a class; `words` name the class in the message."""
 
     kind: type
     words: str
@@ -283,7 +283,7 @@ class InstanceOf:
 
 @dataclass(frozen=True)
 class HasMembers:
-    """An object of the library or the user with some members; of a user's object a snapshot is kept."""
+    """An object with some members; of a user's own object a snapshot is stored, so later changes have no effect."""
 
     members: tuple[str, ...]
     words: str
@@ -360,7 +360,7 @@ class Truth:
 
 
 class Rules:
-    """Rules by field of a dataclass; ``also(item)`` yields faults of several fields together."""
+    """Rules by field of a dataclass; ``also(item)`` yields faults that concern several fields together."""
 
     def __init__(self, owner, also=None, **rules):
         self.owner, self.also, self.rules = owner, also, rules
@@ -368,8 +368,8 @@ class Rules:
         self._quick = tuple((field, rule.quick) for field, rule in rules.items() if field not in optional)
         self._quick_if_given = tuple(optional.items())
 
-    def are_well(self, values):
-        """Whether all values by field are certainly valid; replaces them by the values to keep."""
+    def admit_quickly(self, values):
+        """Whether the quick rules admit all values by field; replaces each admitted one by the value to store."""
         for field, quick in self._quick:
             value = values[field]
             kept = quick(value)
@@ -387,21 +387,21 @@ class Rules:
         return True
 
     def admit(self, item):
-        """Put the values to keep into the fields, or raise `ParameterError`."""
+        """Check the fields and store their values, or raise `ParameterError`."""
         self.keep(vars(item), self.owner)
         if self.also is not None:
             require(self.owner, *self.also(item))
 
     def keep(self, values, owner):
-        """Put the values to keep into a mapping of field to value, or raise `ParameterError`."""
-        if not self.are_well(values):
+        """Check the values in a mapping by field and store them there, or raise `ParameterError`."""
+        if not self.admit_quickly(values):
             values.update(check_values(owner, self.rules, values))
 
 
 class Checked:
-    """A dataclass whose fields keep to its table of rules.
+    """A dataclass whose fields are checked when it is made.
 
-    A field ``Annotated[type, rule]`` has this rule, also where a derived class declares it again with a plain type.
+    A field ``Annotated[type, rule]`` has this rule. A derived class that declares the field with a plain type keeps it.
     """
 
     RULES: ClassVar[Rules]
@@ -420,12 +420,12 @@ class Checked:
 
     def __post_init__(self):
         rules = self.RULES
-        if rules.also is not None or not rules.are_well(self.__dict__):
+        if rules.also is not None or not rules.admit_quickly(self.__dict__):
             rules.admit(self)
 
 
 def check_values(owner, rules, values, *others):
-    """Values to keep by name, each by its rule; one `ParameterError` with all faults, also `others`."""
+    """Values to store by name, each checked by its rule; one `ParameterError` lists all faults and the `others`."""
     found, problems = {}, list(others)
     for field, rule in rules.items():
         found[field], problem = rule.check(values[field], field)
@@ -437,7 +437,7 @@ def check_values(owner, rules, values, *others):
 
 
 def _shapes(values):
-    """Name and shape of each array of designs in values and pairs."""
+    """Yield name and shape of each array of designs among the values, also inside pairs and series."""
     for name, value in values.items():
         for part in value if type(value) is tuple else (value,):
             if len(shape := getattr(part, "shape", ())) > 1:
@@ -445,7 +445,7 @@ def _shapes(values):
 
 
 def single_number(name, value, unit, *, high=None, unequal=None, **rule):
-    """One number in a unit as a float, and its fault as a sentence, or None; `rule` as for `Number`."""
+    """Pair of a single number as a float, and its fault as a sentence or None; `rule` as for `Number`."""
     found, problem = Number(unit, name, **rule).check(value)
     if isinstance(value, list | tuple) or (problem is None and (not has_known_values(found) or np.ndim(found))):
         problem = f"{name} must be one number, got {shown(value)}"
@@ -457,9 +457,9 @@ def single_number(name, value, unit, *, high=None, unequal=None, **rule):
 
 
 def single_numbers(owner, *problems, **given):
-    """Single numbers by name, each given as (value, unit, rule); one `ParameterError` with all faults.
+    """Single numbers by name, each given as (value, unit, rule); one `ParameterError` lists all faults.
 
-    A rule may give another name for messages. One `HintWarning` reports implausible numbers.
+    A rule may contain another name for messages. One `HintWarning` reports implausible numbers.
     """
     found = {
         field: single_number(value=value, unit=unit, **{"name": field} | rule)

@@ -1,7 +1,7 @@
-"""Formulas and cams as the published studies print them, as methods to compare with the library's.
+"""Formulas and cams as published studies print them, to compare with the methods of the library.
 
-`by_the_papers` replaces the groups of a solution by these formulas, for every guide, pivot and assembly. The sawframe
-study prints one wrong sign, in the slot force: `by_the_papers` corrects it, `as_printed` keeps it.
+`by_the_papers` replaces the groups of a solution by groups with these formulas, for any guide, pivot and assembly mode.
+The sawframe study prints a wrong sign in the slot force: `by_the_papers` corrects it, `as_printed` keeps it.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -54,10 +54,10 @@ def turned_to_length(vector, angle, length):
 
 
 def slider_by_double_cross(A, coupler_length, W1, W2, W):
-    """Slider: position of the slider pin by double cross product, acos and the sign of a mixed product.
-    The steps are those of the print (Kotov 2024, figure 3): the perpendicular AC from A to the guide W1-W2, the angle
-    CAB by acos, its side by the sign of a mixed product, and a special case for A on the guide. Near a dead centre of
-    an inclined guide the sign and the special case round the same zero differently and may disagree.
+    """Position of the slider pin by double cross product, acos and the sign of a mixed product (Kotov 2024, figure 3).
+
+    Steps: perpendicular AC from A to the guide W1-W2, angle CAB by acos, its side by the sign of a mixed product, a
+    special case for A on the guide. Near it, for an inclined guide, rounding may make sign and special case disagree.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
     W1, W2 : (x, y)
         Points of the guide, m.
     W : (x, y)
-        W1 or W2: the end of the guide on the side of the slider.
+        W1 or W2, whichever is on the side of the slider as seen from A.
 
     Returns
     -------
@@ -101,9 +101,9 @@ def slider_by_double_cross(A, coupler_length, W1, W2, W):
 def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x, angle):
     """Coupler and rocker angle of the chain unit by atan and acos, and their rates by the two-component formulas.
 
-    As in the Belarusian study of the chain unit, with phi = angle - phi_0 counted from the frame line O-O2, clockwise,
-    and B to the left of A-O2. The coupler angle is correct only while A is left of O2, the rocker angle only while
-    b - r cos(phi) > 0; beyond, atan is wrong by half a turn.
+    As in the Belarusian study of the chain unit: phi = angle - phi_0 is clockwise from the frame line O-O2, and B is to
+    the left of A -> O2. The coupler angle is correct while x of A is less than x of O2, the rocker angle while b - r
+    cos(phi) > 0. Elsewhere atan is wrong by half a turn.
 
     Parameters
     ----------
@@ -147,9 +147,9 @@ def chain_unit_by_atan_acos(crank_length, coupler_length, rocker_length, pivot_x
 def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_x, angle):
     """Angular accelerations of coupler and rocker of the chain unit by the study's equations (11)-(14), (19)-(22).
 
-    Each is a sum of two derivatives. They are of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2
+    Each is a sum of two derivatives. Those are of p / k and (u / v)(s / w) for the coupler, of (b cos(phi) - r) / a^2
     and (u1 / v1)(s1 / w1) for the rocker. Our copy of the study has lost its plus and minus signs; they follow from its
-    derivation. The relative forms are the same with the lengths rho, 1, lambda and sqrt(1 - rho^2).
+    derivation. For the study's dimensionless forms give the lengths rho, 1, lambda and sqrt(1 - rho^2).
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_
     Returns
     -------
     coupler, rocker : arrays (N,)
-        At crank speed 1, clockwise, 1; times the square of a constant crank speed they are rad/s2.
+        Clockwise, rad/s2 at a crank speed of 1 rad/s; in proportion to the square of a constant crank speed.
 
     Examples
     --------
@@ -192,8 +192,8 @@ def chain_unit_accelerations(crank_length, coupler_length, rocker_length, pivot_
 def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, assembly, angle):
     """Coupler and rocker of any four-bar by the formulas of `chain_unit_by_atan_acos`, and their accelerations.
 
-    The x axis is turned into the frame line O-O2, so that f2 and f5 of the study are the same. The rates are
-    differentiated once more, as in the study. The formulas hold while b - r cos(phi) > 0.
+    Angles count from the frame line O-O2, so that f2 and f5 of the study are equal. The angular accelerations are
+    derivatives of its formulas for the rates. The formulas hold while b - r cos(phi) > 0.
 
     Parameters
     ----------
@@ -248,7 +248,7 @@ def four_bar_by_atan_acos(crank_length, coupler_length, rocker_length, pivot, as
 
 
 class CircleAsPrinted(Circle):
-    """Circle by the sawframe study's r = -a cos(phi) + sqrt(R^2 - a^2 sin^2(phi)), centre at a behind O."""
+    """Circle by the sawframe study's r = -a cos(phi) + sqrt(R^2 - a^2 sin^2(phi)), with its centre at phi = 180 deg."""
 
     def polar(self, angle, ray):
         x, y = self.centre
@@ -262,8 +262,8 @@ class CircleAsPrinted(Circle):
 class CosineLawAsPrinted(CosineLaw):
     """Cosine law by the sawframe study's r = x_B cos(phi) - w, w = +-sqrt(l^2 - x_B^2 sin^2(phi)).
 
-    w has the sign of cos(phi) - cos(phi*). At the singular angle phi* the radicand, a double zero, has lost half its
-    digits, and the derivatives divide by it.
+    w has the sign of cos(phi) - cos(phi*). At the singular angle phi* the radicand has a double zero. Near it w loses
+    up to half its digits, and the derivatives divide by w.
     """
 
     def polar(self, angle, ray):
@@ -293,7 +293,7 @@ __all__ = [
 ]
 
 EQUILIBRIUM, PRINTED = 1.0, -1.0
-"""Sign of R40 sin(nu) in the slot force: that of the block's equilibrium, and that of the sawframe study."""
+"""Sign of R40 sin(nu) in the slot force, as the block's equilibrium requires, and as the sawframe study prints it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,8 +301,8 @@ class RollerByAngles(CamRoller):
     """Cam roller by the sawframe study: cam and slot force from size and direction of the load R42 on the block.
 
     R40 = -R42 cos(phi - alpha42) / cos(nu) acts along the cam's outward normal, at phi - nu. R41 = R42 sin(phi -
-    alpha42) + R40 sin(nu) acts across the ray, at phi + 90 deg. The study prints R41 with a minus, with which the sum
-    of the three forces on the block is not zero: `sign` is `EQUILIBRIUM` or `PRINTED`.
+    alpha42) + R40 sin(nu) acts across the ray, at phi + 90 deg. The study prints a minus before R40 sin(nu), with which
+    the three forces on the block do not balance. `sign` is `EQUILIBRIUM` or `PRINTED`.
     """
 
     sign: float = EQUILIBRIUM
@@ -321,7 +321,7 @@ class RollerByAngles(CamRoller):
 
 
 class SliderByVectors(SliderGroup):
-    """Slider by the mower study: `slider_by_double_cross`, then the loop equation, differentiated, with its vectors."""
+    """Slider by the mower study: `slider_by_double_cross`; both derivatives from the loop equation of the vectors."""
 
     TRUSTED = True
 
@@ -383,17 +383,17 @@ class RockerByAtanAcos(RockerGroup):
 
 
 def _convert(kind, original, **more):
-    """A group or cam of another class with the same data."""
+    """A group or cam of the class `kind` with the fields of another."""
     return kind(*(getattr(original, field.name) for field in fields(original) if field.init), **more)
 
 
 def by_the_papers(solution, sign=EQUILIBRIUM):
-    """The solution by the formulas of the study of its mechanism, by default with the wrong sign corrected.
+    """The solution by the formulas of the study that treats its mechanism, by default with the wrong sign corrected.
 
     Parameters
     ----------
     solution : Solution
-        Solution of a mechanism like one of the cases.
+        Of a crank-slider, a four-bar, or a cam-balanced crank-slider with a circle or cosine law as its cam.
     sign : float
         Sign of R40 sin(nu) in the slot force of a cam roller: `EQUILIBRIUM` or `PRINTED`.
 
@@ -433,9 +433,9 @@ def by_the_papers(solution, sign=EQUILIBRIUM):
 
 
 def exactly_cancelled(solution):
-    """The solution with a force instead of the springs that cancels the slider's inertia at every position.
+    """The solution with its springs replaced by a force that cancels the slider's inertia at every crank angle.
 
-    This is the sawframe study's assumption: a cosine law of motion, which the circular cam does not give.
+    The sawframe study assumes this. It is true for a cosine law of motion, but not for the circular cam.
 
     Parameters
     ----------
@@ -457,7 +457,7 @@ def exactly_cancelled(solution):
     >>> saw = ks.load_case("sawframe_2r63")
     >>> plain, circle = (saw.solve(name, 8) for name in ("plain", "cam-circle"))
     >>> cancelled = ks.papers.exactly_cancelled(circle)
-    >>> for solution in circle, cancelled:  # along the guide nothing is left for the slider's pin
+    >>> for solution in circle, cancelled:  # cancelled: no force along the guide is left at B
     ...     print(f"{abs(solution.reaction('B')[0]).max():.0f} N")
     3941 N
     0 N
@@ -470,7 +470,7 @@ def exactly_cancelled(solution):
 
 
 def as_printed(solution):
-    """The solution by the sawframe study's equations as printed: exact cancellation, and its sign in the slot force.
+    """The solution by the sawframe study's equations as printed: `exactly_cancelled`, and the wrong sign of a force.
 
     This is not correct mechanics: it gives the study's dynamic coefficients but violates the balance of powers.
 
@@ -486,7 +486,7 @@ def as_printed(solution):
     Raises
     ------
     NotGivenError
-        The solution is of another machine.
+        The mechanism is not a crank-slider with a circular cam, or the solution has no spring.
 
     Examples
     --------
@@ -505,7 +505,7 @@ def as_printed(solution):
 
 
 def _method(formulas, solution, quantity, setting=None):
-    """Method that computes a solution by other formulas."""
+    """Function that computes the components of a quantity by other formulas, for a `Method`."""
     require_one_design(solution)
     require_frictionless(solution)
     formulated = formulas(solution)

@@ -1,4 +1,4 @@
-"""Sliders and number fields: for each parameter of a scene its group, shown unit, ends and digits."""
+"""Input fields of the page: for each parameter of a scene its group, label, display unit, range and step."""
 
 import math
 import re
@@ -9,39 +9,39 @@ from ...numbers.formatting import pretty_unit
 from ...numbers.output_units import dimension_name, shown_units
 
 UNITS = {"rad": (180.0 / math.pi, "deg"), "rad/s": (30.0 / math.pi, "rpm")}
-"""Factor and unit shown for units that people do not read."""
+"""Factor and display unit for angles and angular speeds."""
 STEPS_OF_A_SLIDER = 400
-"""Least number of steps of a slider between its ends."""
+"""Steps of an input slider over its range, before its step is rounded up."""
 SHORTEST = 0.2
-"""Lower end of the slider of a link's length, over its value: no link has length 0."""
+"""Lower end of the range of a link's length, relative to its value: a link cannot have length 0."""
 TINY = 1e-200
-"""Size of a number below which its slider is that of zero."""
+"""Size below which a number has the range of a zero."""
 UNKNOWN_REACH = 1.0
-"""End of the slider of a number 0, SI, if the machine has no number of its unit."""
+"""Upper end of the range of a zero, SI, if no other number of the machine suggests one."""
 DRIVE = ("crank_speed", "crank_acceleration")
-OF_A_GROUP = re.compile(r"(\w+?)_(\w*?)(\d*)")
-"""Number of a link or guide: "coupler_length2" is the length of "coupler2"."""
+PATH_OF_LINK = re.compile(r"(\w+?)_(\w*?)(\d*)")
+"""Path of a number of a link or guide: "coupler_length2" is the length of "coupler2"."""
 COORDINATES = re.compile(r".*(along|across|offset\d*|\.[xy])")
-"""Lengths that may be on both sides of 0."""
+"""Paths of coordinates and offsets, which may be negative."""
 WORDS = {
     "centre.along": "mass centre along",
     "centre.across": "mass centre across",
     "inertia": "moment of inertia",
     "mu": "coefficient of friction",
 }
-"""Labels of numbers by the end of their path."""
+"""Words in a label for the end of a path."""
 HIDDEN = re.compile(r"sense|exact\d*\.[xy]")
-"""Parameters without a slider: a direction (x, y) has length 1, so neither part may change alone."""
+"""Parameters without a field: the sense is +1 or -1, and the components of a unit vector cannot change alone."""
 
 
 def shown_unit(unit):
-    """Factor and unit in which a number of a field is shown."""
+    """Factor from an SI unit to the display unit, and that unit."""
     factor, chosen = shown_units().of(unit)
     return (factor, chosen) if dimension_name(unit) in shown_units().chosen else UNITS.get(unit, (1.0, unit))
 
 
 def fields(scene):
-    """Fields of all numbers of a scene by group: dicts with path, group, label, value, unit, factor, ends and step."""
+    """Fields of all numbers of a scene, group by group: dicts in SI, with display `unit` and the `factor` to it."""
     units = scene.units
     plain = {path: float(value) for path, value in scene.parameters.items() if np.ndim(value) == 0}
     links = {path.removesuffix(".mass") for path in plain if path.count(".") == 1 and path.endswith(".mass")}
@@ -49,9 +49,9 @@ def fields(scene):
     for path, value in plain.items():
         if HIDDEN.fullmatch(path):
             continue
-        group, label = words(path, links)
+        group, label = group_and_label(path, links)
         factor, unit = shown_unit(units[path])
-        low, high = ends(path, value, plain, units)
+        low, high = range_of(path, value, plain, units)
         step = round_step((high - low) * factor / STEPS_OF_A_SLIDER)
         found.setdefault(group, []).append(
             {
@@ -69,12 +69,12 @@ def fields(scene):
     return [field for group in found.values() for field in group]
 
 
-def words(path, links):
-    """Group of a parameter, a link if it belongs to one, and its label."""
+def group_and_label(path, links):
+    """Group of a parameter ("drive", "lengths", or its link or load), and its label in that group."""
     part, _, name = path.partition(".")
     if path in DRIVE:
         return "drive", path.replace("_", " ")
-    match = OF_A_GROUP.fullmatch(part)
+    match = PATH_OF_LINK.fullmatch(part)
     if part not in links and match and (match[1] == "guide" or match[1] + match[3] in links):
         part, name = match[1] + match[3], f"{match[2]}.{name}".strip(".")
     if not name:
@@ -85,8 +85,8 @@ def words(path, links):
     return part, name.replace("_", " ").replace(".", " ")
 
 
-def ends(path, value, values, units):
-    """Ends of the slider of a number, SI: of an angle half a turn; from 0 to twice the value, or both sides of 0."""
+def range_of(path, value, values, units):
+    """Range of a number, SI: half a turn each way for angles, else 0 to twice the value, both ways for coordinates."""
     unit, dimension = units[path], dimension_name(units[path])
     if dimension == "angle":
         return min(-math.pi, value), max(math.pi, value)
@@ -113,6 +113,6 @@ def ends(path, value, values, units):
 
 
 def round_step(step):
-    """The next number 1, 2 or 5 times a power of ten above a positive one."""
+    """The least number of 1, 2 or 5 times a power of ten that is not below a positive step."""
     power = 10.0 ** math.floor(math.log10(step))
     return next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= step * (1 - 1e-9)) * power
