@@ -102,7 +102,7 @@ def _errors_of_peaks(pieces, values, errors, sides, vector):
 def estimated(pieces, output, values, vector=False):
     """Numbers (designs,) of an `Output`, and a mask of those that are uncertain.
 
-    `values` (pieces, points + 2) are at `Pieces.checked`: of a `vector` magnitudes, or their squares for a peak.
+    `values` (pieces, points + 2) are at `Pieces.check_angles`: of a `vector` magnitudes, or their squares for a peak.
     """
     errors = np.where(pieces.can_split, ERROR_FACTOR * pieces.errors(values), 0.0)
     inner = values[:, 1:-1]
