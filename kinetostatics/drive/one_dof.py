@@ -402,8 +402,8 @@ class DrivenMachine:
     def _solve_acceleration(self, angle, speed, inertia, rest, acceleration=None, slope=0.0):
         """Friction torque Tf, acceleration a and dTf/da with Tf(a) + inertia a = rest, by the secant rule."""
 
-        def friction_at(acceleration, place=...):
-            return self._converged_outputs(angle[place], speed[place], acceleration)[FRICTION]
+        def friction_at(acceleration):
+            return self._converged_outputs(angle, speed, acceleration)[FRICTION]
 
         acceleration = rest / inertia if acceleration is None else acceleration
         friction = friction_at(acceleration)
@@ -424,21 +424,23 @@ class DrivenMachine:
             converged = (doubt <= size) & (inertia + slope > 0.0)
             if converged.all():
                 return friction + slope * left, acceleration + left, slope
-        place = np.nonzero(~converged)
+        place = ~converged
         friction, acceleration, slope = friction + slope * left, acceleration + left, slope + 0.0 * left
         friction[place], acceleration[place], slope[place] = self._bracket_acceleration(
-            lambda acceleration, some: friction_at(acceleration, tuple(row[some] for row in place)),
-            *(part[place] for part in (angle, speed, inertia, rest)),
+            *(part[place] for part in (angle, speed, inertia, rest))
         )
         return friction, acceleration, slope
 
-    def _bracket_acceleration(self, friction_at, angle, speed, inertia, rest):
+    def _bracket_acceleration(self, angle, speed, inertia, rest):
         """`_solve_acceleration` by bracketing, which converges across kinks of friction.
 
-        `friction_at(acceleration, place)` returns the friction torque (n,) at the crank angles of index `place`.
         Friction resists the motion, so the root lies beyond `rest / inertia`, the acceleration without friction, on
         the side to which friction points there.
         """
+
+        def friction_at(acceleration, place):
+            return self._converged_outputs(angle[place], speed[place], acceleration)[FRICTION]
+
         every = np.arange(rest.size)
         start = rest / inertia
         first = friction_at(start, every)
