@@ -268,7 +268,7 @@ def spring_surge(solution, spring_mass=None):
     pieces = Pieces(edges_between(solution.sampled.pieces.edges, 2.0 * TURN / HARMONICS), SURGE_POINTS)
     angle, weights = pieces.angle.ravel(), np.ravel(pieces.half * rule(SURGE_POINTS).weights) / solution.period
     end = solution.at(angle).placement.travels[spring.on].position
-    rate = float(spring.mean_tangent(end, weights))
+    rate = float(spring.mean_rate(end, weights))
     if not rate > 0.0:
         raise ParameterError(f"spring_surge: the Spring must have a stiffness, but its mean rate is {rate:.6g} N/m")
     waves = np.exp(1j * np.outer(np.arange(HARMONICS), angle))

@@ -6,7 +6,6 @@ functions of its operations.
 
 import math
 from collections.abc import Callable
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -326,15 +325,10 @@ def _plain_total(*terms):
         return compensated_sum(*terms)
 
 
-@lru_cache(maxsize=16)
-def _code(source):
-    return compile(source, "<program>", "exec")
-
-
 def compile_line(source, scope):
-    """Function `line` of a source, with its operations from a scope; the same source is compiled once."""
+    """Function `line` of a source or its code, with its operations from a scope."""
     scope = dict(scope)
-    exec(_code(source), scope)
+    exec(source, scope)
     return scope["line"]
 
 

@@ -106,7 +106,7 @@ def _surge_hints(mechanism, spring, crank_speed):
     if found is None or not np.any(crank_speed):
         return
     order, position = found
-    rate, mass, speed = np.maximum(spring.mean_tangent(position), 0.0), np.asarray(spring.mass), np.abs(crank_speed)
+    rate, mass, speed = np.maximum(spring.mean_rate(position), 0.0), np.asarray(spring.mass), np.abs(crank_speed)
     natural = surge.surge_frequency(rate, np.maximum(mass, MIN_MASS))
     natural, mass, driven = np.broadcast_arrays(natural, mass, order * speed)
     ratio = np.full(natural.shape, np.inf)

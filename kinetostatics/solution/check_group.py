@@ -318,7 +318,9 @@ def _slidings(stage, placement):
             continue
         slide, joint = stage.group.sliding(name, placement), placement.joints[pair.joint]
         direction = (1.0, 0.0) if slide.direction is None else slide.direction
-        first = subtract_vectors(_first_at(placement, pair.link, joint), _first_at(placement, pair.against, joint))
+        first = subtract_vectors(
+            _first_derivative_at(placement, pair.link, joint), _first_derivative_at(placement, pair.against, joint)
+        )
         yield f"rate of sliding of {name}", slide.rate, dot(direction, vector_or_zero(first)), stage.size
         if pair.against != FRAME:
             away = subtract_vectors(joint.position, placement.links[pair.against].joint.position)
@@ -330,7 +332,7 @@ def _declared(group, name):
     return getattr(group, name, {})
 
 
-def _first_at(placement, link, joint):
+def _first_derivative_at(placement, link, joint):
     """First derivative by the crank angle of the point of a link at a joint."""
     if link == FRAME:
         return None

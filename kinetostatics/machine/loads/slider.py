@@ -189,7 +189,7 @@ class Spring(SliderLoad):
         elongation = motion.elongation(self.free_position, self.on)
         return self.stiffness + self.cubic * elongation * elongation
 
-    def mean_tangent(self, position, weights=None):
+    def mean_rate(self, position, weights=None):
         """Mean tangent stiffness over the slider's positions in a period, N/m, by design."""
         rate = self.stiffness + 3.0 * self.cubic * (position - self.free_position) ** 2
         return np.mean(rate, axis=-1, keepdims=np.ndim(rate) > 1) if weights is None else rate @ weights
