@@ -360,7 +360,7 @@ class DrivenMachine:
     def _friction_outputs(self, angle, speed, acceleration, senses):
         """Outputs of the friction program at crank angles, speeds and accelerations of one shape."""
         given = {"crank_speed": speed, "crank_acceleration": acceleration} | senses
-        columns = {path: np.broadcast_to(value, angle.shape).reshape(-1, 1) for path, value in given.items()}
+        columns = {path: value.reshape(-1, 1) for path, value in given.items()}
         rows = self._program.unlooked(angle.reshape(-1, 1), columns, self._compiled)
         return {name: value.reshape(angle.shape) for name, value in rows.items()}
 

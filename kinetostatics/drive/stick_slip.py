@@ -288,9 +288,9 @@ class March:
 
     def _stops_within(self, machine, reach):
         """Whether the torque just ahead absorbs the energy within a crank angle."""
-        place = self.inside + machine.direction * ANGLE_AHEAD
-        net = self._attempt(machine.torque_at, place, machine.direction * self.speed)
-        return net is not None and -machine.direction * net * reach > self.energy
+        place, speed = np.array([self.inside + machine.direction * ANGLE_AHEAD]), machine.direction * self.speed
+        state = self._attempt(machine.at_acceleration, place, speed, 0.0)  # near enough
+        return state is not None and -machine.direction * (machine.motor_torque(speed) - state.torque[0]) * reach > self.energy
 
     def _attempt(self, function, *parts):
         """Result of a function, or None if it fails; `problem` is its error."""
@@ -419,7 +419,7 @@ def _beside_rest(driven, angle, length, energy, count):
     """
     share, means, whole = _means(count)
     direction, root = driven.direction, 1.0 if energy is None else -1.0
-    mean, before, noise = None, math.inf, 0.0
+    mean, before, noise, near = None, math.inf, 0.0, None
     for _ in range(MAX_STEPS_AT_REST):
         place = share * share if energy is None else (1.0 - share) * (1.0 + share)
         places = angle + direction * length * place
@@ -428,7 +428,7 @@ def _beside_rest(driven, angle, length, energy, count):
             mean = direction * driven.torque_at_rest(angle)[0] if energy is None else energy / length
             mean = np.full(count, mean)
         pace = np.sqrt(2.0 * length * mean / inertia)
-        state = driven.at(places, direction * share * pace)
+        state = driven.at(places, direction * share * pace, near)
         motor = driven.motor_torque(direction * share * pace)
         torque = root * direction * (motor - state.torque)
         last, mean, total = mean, means @ torque, float(whole @ torque)
@@ -442,7 +442,7 @@ def _beside_rest(driven, angle, length, energy, count):
             length, size = length * (1.0 + max(step, -0.5)), max(size, abs(step))
         if size < 1e-15 or (size < 1e-12 + noise and size >= 0.5 * before):
             break
-        before = size
+        before, near = size, driven.motion_with_friction
     else:
         return None
     slowness = np.sqrt(2.0 * length * inertia / mean)

@@ -107,10 +107,11 @@ def parameter_table(numbers, shape):
     if not shape:
         return np.array([numbers], dtype=float)
     table = np.empty((math.prod(shape), len(numbers)))
-    table[...] = [0.0 if np.ndim(number) else number for number in numbers]
-    for place, number in enumerate(numbers):
-        if np.ndim(number):
-            table[:, place] = np.broadcast_to(number, (*shape, 1)).ravel()
+    arrays = {place: number for place, number in enumerate(numbers) if type(number) is not float and np.ndim(number)}
+    table[...] = [0.0 if place in arrays else number for place, number in enumerate(numbers)]
+    by_design = table.reshape(*shape, len(numbers))
+    for place, number in arrays.items():
+        by_design[..., place] = number[..., 0]
     return table
 
 
