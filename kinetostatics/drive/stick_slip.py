@@ -30,6 +30,8 @@ MAX_STEPS_AT_REST = 40
 """Fixed-point steps of the energy near a standstill."""
 ROUNDING = 1e-15
 """Relative rounding of crank angles and torques: noise of the net torque on steep ramps and near an equilibrium."""
+MAX_TAIL_RATIO = 100.0
+"""Tail of a torque, relative to the largest allowed one, above which the steps near a standstill end early."""
 MAX_REACH_GROWTH = 8.0
 """Ratio of successive crank angles in attempts."""
 MAX_EDGES = 200
@@ -290,7 +292,9 @@ class March:
         """Whether the torque just ahead absorbs the energy within a crank angle."""
         place, speed = np.array([self.inside + machine.direction * ANGLE_AHEAD]), machine.direction * self.speed
         state = self._attempt(machine.at_acceleration, place, speed, 0.0)  # near enough
-        return state is not None and -machine.direction * (machine.motor_torque(speed) - state.torque[0]) * reach > self.energy
+        if state is None:
+            return False
+        return -machine.direction * float(machine.motor_torque(speed) - state.torque[0]) * reach > self.energy
 
     def _attempt(self, function, *parts):
         """Result of a function, or None if it fails; `problem` is its error."""
@@ -411,6 +415,11 @@ def _means(count):
     return share, means[:-1], means[-1]
 
 
+def _tail(values):
+    """Relative size of the last coefficients of a series from values at the points of one piece."""
+    return Pieces(np.array([-1.0, 1.0]), values.size).tail(values[None])[0]
+
+
 def _beside_rest(driven, angle, length, energy, count):
     """Stretch next to a standstill, its length, rad, and the mean torque over it; or None.
 
@@ -442,12 +451,15 @@ def _beside_rest(driven, angle, length, energy, count):
             length, size = length * (1.0 + max(step, -0.5)), max(size, abs(step))
         if size < 1e-15 or (size < 1e-12 + noise and size >= 0.5 * before):
             break
+        if near and _tail(torque) > MAX_TAIL_RATIO * (10.0 * TAIL + noise):
+            return None
         before, near = size, driven.motion_with_friction
     else:
         return None
     slowness = np.sqrt(2.0 * length * inertia / mean)
-    tails = [Pieces(np.array([-1.0, 1.0]), count).tail(row[None]).max() for row in (torque, pace, slowness)]
-    if max(tails) > 10.0 * TAIL + noise or not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
+    if max(map(_tail, (torque, pace, slowness))) > 10.0 * TAIL + noise:
+        return None
+    if not inertia.min() > MIN_INERTIA_RATIO * inertia.max():
         return None
     friction = state.torque - driven.without_friction(places, direction * share * pace).torque
     way, reach = int(root), direction * length
