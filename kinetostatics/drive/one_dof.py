@@ -222,7 +222,7 @@ class DrivenMachine:
         return state._replace(torque=state.torque + friction.reshape(state.torque.shape))
 
     def without_friction(self, angle, speed=None) -> State:
-        """State without friction; the last one is cached where loads do not depend on the speed.
+        """State without friction; the last one is cached, for its inertia alone where loads depend on the speed.
 
         Raises the error of `solve` at the crank angles where the state is not finite.
         """
@@ -302,6 +302,9 @@ class DrivenMachine:
 
     def inertia(self, angle):
         """Total inertia, kg m2."""
+        cached = self._cached_state
+        if cached and cached[0] is angle:
+            return self.flywheel + cached[1].inertia
         return self.flywheel + self.without_friction(angle, np.full(angle.shape, self.direction)).inertia
 
     def motor_torque(self, speed):

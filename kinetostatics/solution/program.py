@@ -205,11 +205,11 @@ class Program:
         return self._program.recording.named(read_only(self._backend.bounds(self._program, state, leaves, tight)))
 
     def unlooked(self, angle, values, compiled):
-        """Values by quantity, compiled or not; the caller checks numbers and friction."""
+        """Values by quantity, compiled or not; the caller checks numbers, friction, and at a single float the loads."""
         numbers = list(self._leaves.numbers)
         for path, value in values.items():
             numbers[self._numbers[path][0]] = value
-        if type(angle) is float and not (self._refuses or self._program.recording.tables):
+        if type(angle) is float and not self._program.recording.tables:
             return self._program.recording.named(self._program.at_one(angle, numbers, compiled))
         state, leaves = self._state(np.asarray(angle), values, self._leaves.with_numbers(numbers))
         return self._program.recording.named(self._program.run(state, leaves, compiled))
