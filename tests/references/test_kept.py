@@ -14,7 +14,6 @@ QUICK = "compressor", "pumpjack", "yoke_pump"
 """Cases whose values take less than half a second."""
 COMPILED = (
     ("sawframe_2r63", "plain"),
-    ("sawframe_2r63", "cam-cosine"),
     ("sawframe_2r63_friction", "cam-cosine"),
     ("chain_unit", "rho-0.5"),
 )

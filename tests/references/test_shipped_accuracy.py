@@ -23,7 +23,7 @@ VANISHING = 0.01
 """So is O of the two saws that are balanced by design, 0.3 and 0.9 % of their springs' force: one rounding of r' of the
 cam makes 4e-15 of it.
 """
-EVEN, BETWEEN = 1800, 200
+EVEN, BETWEEN = 720, 100
 """Crank angles a turn, and between two kinks of a table, as `ordinary_angles` has them."""
 PLAIN, TIGHT, TIGHT_OF_TABLES = 100.0, 20.0, 50.0
 

@@ -1,28 +1,30 @@
 """Results that a change of the package's internals must keep: how they are computed, written, read and compared.
 
-Public names only, and the command line as a user runs it, so that this module need not change with the internals.
+Public names and commands only, so that this module need not change with the internals.
 `tests/references/make_kept.py` writes what `SUBJECTS` compute into `tests/data/kept`; `test_kept.py` computes it again.
 
 A subject's results are a flat mapping from a path to an array, a number, a text, or a list of texts. The first part of
 the path is the variant or the study, the second says how the result is compared (`RULES`), the rest what it is.
 """
 
+import contextlib
+import io
 import json
 import math
 import os
 import re
 import shlex
-import subprocess
-import sys
 import warnings
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
+from unittest import mock
 
 import numpy as np
 import pandas as pd
 
 import kinetostatics as ks
+from kinetostatics.cli import main
 
 FOLDER = Path(__file__).parents[1] / "data" / "kept"
 ANGLES, BOUNDED_ANGLES = 720, 36
@@ -333,17 +335,16 @@ def printed():
 
 
 def run_command(words):
-    """What a command prints as a user runs it, then errors and the exit status, without the folder of the cases."""
-    done = subprocess.run(
-        [sys.executable, "-m", "kinetostatics", *words],
-        env=os.environ | {"COLUMNS": "80", "NO_COLOR": "1"},
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        check=False,
-    )
+    """What a command prints, then errors and the exit status, without the folder of the cases."""
+    printed, errors = io.StringIO(), io.StringIO()
+    with (
+        mock.patch.dict(os.environ, {"COLUMNS": "80", "NO_COLOR": "1"}),
+        contextlib.redirect_stdout(printed),
+        contextlib.redirect_stderr(errors),
+    ):
+        status = main(words)
     folder = next(iter(ks.shipped_cases().values())).parent
-    return f"{done.stdout}{done.stderr}exit status {done.returncode}\n".replace(f"{folder}{os.sep}", "")
+    return f"{printed.getvalue()}{errors.getvalue()}exit status {status}\n".replace(f"{folder}{os.sep}", "")
 
 
 def arithmetic():
