@@ -292,10 +292,10 @@ class Pieces:
         """
         pieces, errors = self, self.errors(values)
         most = self.sums(np.ones(len(self.half), int)) + MAX_UNRESOLVED * self.period / TURN
-        for _ in range(MAX_HALVINGS):
+        for halvings in range(MAX_HALVINGS + 1):
             unresolved = rough(pieces, errors, values) & pieces.can_split
             marked = unresolved & (pieces.sums(unresolved.astype(int)) <= most)[pieces.owner]
-            if not marked.any():
+            if halvings == MAX_HALVINGS or not marked.any():
                 break
             parts = 1 + marked
             new, pieces = np.repeat(marked, parts), pieces.split(marked)

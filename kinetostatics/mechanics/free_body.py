@@ -2,7 +2,8 @@
 
     sum F = 0        sum (r x F + C) = 0
 
-Reactions are the forces of pairs (`pair_forces`). Inertia (d'Alembert: -m a at the mass centre and -I alpha) and weight
+Reactions are the forces of pairs (`pair_forces`). A reaction acts on the `link` of its pair, and its opposite on the
+other link (`machine.links.Turning`, `Sliding`). Inertia (d'Alembert: -m a at the mass centre and -I alpha) and weight
 are those of `Dynamics`; loads give their forces or wrenches.
 """
 
