@@ -101,6 +101,8 @@ def test_printed_method_is_studied_apart():
 def test_printed_method_gives_the_printed_solution(quantity):
     found = papers.AS_PRINTED.prepare(CIRCLE, quantity, None)()
     np.testing.assert_array_equal(found, components(papers.as_printed(CIRCLE), quantity))
+    found, right = np.asarray(found), np.asarray(components(CIRCLE, quantity))
+    assert np.abs(found - right).max() == pytest.approx(0.3 * np.abs(right).max(), rel=0.02)
 
 
 # Formulas as the studies print them
