@@ -289,9 +289,9 @@ class March:
         return found and (found[0], self.inside + direction * found[1], 0.0), min(reach, stops)
 
     def _stops_within(self, machine, reach):
-        """Whether the torque just ahead absorbs the energy within a crank angle."""
+        """Whether the torque just ahead, its friction at acceleration 0, absorbs the energy within a crank angle."""
         place, speed = np.array([self.inside + machine.direction * ANGLE_AHEAD]), machine.direction * self.speed
-        state = self._attempt(machine.at_acceleration, place, speed, 0.0)  # near enough
+        state = self._attempt(machine.at_acceleration, place, speed, 0.0)
         if state is None:
             return False
         return -machine.direction * float(machine.motor_torque(speed) - state.torque[0]) * reach > self.energy
@@ -424,7 +424,8 @@ def _beside_rest(driven, angle, length, energy, count):
     """Stretch next to a standstill, its length, rad, and the mean torque over it; or None.
 
     It leaves rest at the angle, or, with an energy there, comes to rest at a length that follows from it. With M the
-    mean of the torque from rest, the energy is length u^2 M.
+    mean of the torque from rest, the energy is length u^2 M. The first step solves for friction; in each later step
+    friction is linear in the acceleration, from the values of the step before.
     """
     share, means, whole = _means(count)
     direction, root = driven.direction, 1.0 if energy is None else -1.0
