@@ -25,7 +25,7 @@ MAX_STEPS_FROM_START = 12
 EPSILON = float(np.finfo(float).eps)
 STEPS_BELOW_ZERO = 2
 """Number of steps from a start after which an energy below 0 counts as a standstill."""
-MIN_FACTOR = 0.3
+MIN_STEP_SHARE = 0.3
 """Share of a step from a start that keeps the energy above 0; with less it counts as a standstill at once."""
 ENERGY_TOLERANCE = 1e-14
 MAX_NEAR_CHANGE = 1e-2
@@ -87,7 +87,7 @@ def solve_energy(driven, pieces, energy, start=None, near=None):
         if not found.min() > 0.0:
             falling = change < 0.0
             factor = 0.7 * float(np.min(energy[falling] / -change[falling]))
-            if start is not None and (step >= STEPS_BELOW_ZERO or factor < MIN_FACTOR):
+            if start is not None and (step >= STEPS_BELOW_ZERO or factor < MIN_STEP_SHARE):
                 raise StandstillError(pieces.angle[found <= 0.0][0 if driven.direction > 0.0 else -1])
             if factor < 1e-6:
                 return None

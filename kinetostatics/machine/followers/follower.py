@@ -165,12 +165,7 @@ class LawRule:
 
 
 class Follower(checks.Checked, Group):
-    """Follower of one link, `moved`, by a law of the crank angle.
-
-    Besides the members of a `Group`, a follower gives ``pitch(law)``, the pitch curve from values of the law, and, with
-    a roller, the output "cam_radius". `LAW` is the symbol and unit of its coordinate, `LINKS` its one link with the
-    field that names its pin. If its body is flat, `BODY` is "face". `RollerFollower` is the shortest example.
-    """
+    """Follower of one link, `moved`, by a law of the crank angle; the folder lists what a new one must give."""
 
     cam: Annotated[Any, LawRule()]
     pin: Name
